@@ -1,0 +1,79 @@
+# Everything runs in .venv, which is made on first use; nothing else is touched.
+
+PYTHON ?= python3
+VENV ?= .venv
+PYTEST_ARGS ?= -n auto
+FUZZ_COUNT ?= 1000000
+
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip -qq --disable-pip-version-check --no-input
+
+export MPLBACKEND ?= Agg
+
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+.PHONY: help demo test referee lint format docs fuzz bench clean distclean
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+# ---------------------------------------------------------------- environment
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(None if sys.version_info >= (3, 11) else "fuzzytrack needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
+	$(PYTHON) -m venv $(VENV)
+
+# One stamp for the package and one for each extra; all are redone when pyproject.toml changes.
+$(VENV)/.installed: pyproject.toml | $(BIN)/python
+	$(PIP) install --editable .
+	@touch $@
+
+$(VENV)/.installed-%: pyproject.toml | $(BIN)/python
+	$(PIP) install --editable '.[$*]'
+	@touch $@
+
+.PRECIOUS: $(VENV)/.installed-%
+
+# ---------------------------------------------------------------- use
+
+demo: $(VENV)/.installed ## Track a turning target and write pictures and tables to demo/
+	$(BIN)/fuzzytrack demo -o demo
+
+# ---------------------------------------------------------------- checks
+
+test: $(VENV)/.installed-test ## Run every test, with branch coverage (PYTEST_ARGS= for one process)
+	$(BIN)/python -m pytest $(PYTEST_ARGS) --cov --cov-branch --cov-report=term-missing:skip-covered
+
+referee: $(VENV)/.installed-test ## Compare the engine with pyfuzzylite (GPL, installed for this only)
+	$(PIP) install --no-deps pyfuzzylite
+	$(BIN)/python -m pytest $(PYTEST_ARGS) tests/referee
+
+lint: $(VENV)/.installed-test ## Check style, format and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(VENV)/.installed-test ## Put the code into the one format
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+
+docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; a warning is an error
+	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
+	@echo "Documentation: docs/_build/html/index.html"
+
+fuzz: $(VENV)/.installed-test ## Feed the rule-base loader FUZZ_COUNT broken files
+	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
+
+bench: $(VENV)/.installed-bench ## Measure speed on this machine
+	$(BIN)/python benchmarks/speed.py
+
+# ---------------------------------------------------------------- tidying
+
+clean: ## Remove what was built, but keep .venv
+	rm -rf build dist demo docs/_build docs/gallery docs/api/generated docs/sg_execution_times.rst
+	rm -rf .coverage .coverage.* .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find . -path './$(VENV)' -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +
+
+distclean: clean ## Remove .venv as well
+	rm -rf $(VENV)
