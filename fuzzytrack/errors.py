@@ -1,0 +1,71 @@
+"""Errors and warnings that users meet; all are ``ValueError`` or ``UserWarning`` underneath."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["DataError", "Location", "NoRuleFiresWarning", "PluginWarning", "RuleBaseError", "Word"]
+
+
+@dataclass(frozen=True)
+class Location:
+    """Where a word stands in a file; lines and columns count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class Word(str):
+    """A word read from a file, which remembers where it stands; else an ordinary string.
+
+    Parameters
+    ----------
+    text : str
+        The word.
+    location : Location or None
+        Place in the file.
+    """
+
+    location: Location | None
+
+    def __new__(cls, text: str, location: Location | None = None) -> Word:
+        """Make the word; ``str`` is filled when it is made, not in ``__init__``."""
+        word = super().__new__(cls, text)
+        word.location = location
+        return word
+
+
+class RuleBaseError(ValueError):
+    """A rule base that cannot be used; says where it is wrong and what was allowed.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, with the offending word and the allowed ones.
+    location : Location or None
+        Place in the file; None for a rule base built in Python.
+    """
+
+    def __init__(self, message: str, location: Location | None = None) -> None:
+        super().__init__(f"{location}: {message}" if location else message)
+        self.message = message
+        self.location = location
+
+    def __reduce__(self) -> tuple[type[RuleBaseError], tuple[str, Location | None]]:
+        return type(self), (self.message, self.location)
+
+
+class DataError(ValueError):
+    """A data file or measurement array that cannot be tracked; names row and column."""
+
+
+class NoRuleFiresWarning(UserWarning):
+    """No rule fires at some inputs, so the output there is NaN."""
+
+
+class PluginWarning(UserWarning):
+    """A plug-in could not be loaded and was skipped."""

@@ -1,0 +1,1 @@
+"""A generic discrete fuzzy engine; it knows nothing of tracking."""

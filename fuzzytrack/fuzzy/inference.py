@@ -1,0 +1,127 @@
+"""Rule evaluation on arrays: from input grades to fuzzy outputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.fuzzy.rulebase import Operators, RuleBase
+from fuzzytrack.fuzzy.variable import Variable
+
+__all__ = ["Conclusions", "conclusions", "conjoin", "disjoin", "output_grid", "strengths"]
+
+Array = NDArray[np.float64]
+
+
+def conjoin(operators: Operators, a: Array, b: Array | float) -> Array:
+    """AND of two arrays of grades (Table 3.1 of Llinas et al. 1998)."""
+    return a * b if operators.conjunction == "product" else np.minimum(a, b)
+
+
+def disjoin(operators: Operators, grades: Array, axis: int | tuple[int, ...]) -> Array:
+    """OR over axes of an array of grades (Table 3.1)."""
+    return np.asarray(grades.sum(axis) if operators.disjunction == "sum" else grades.max(axis))
+
+
+def output_grid(operators: Operators, output: Variable) -> tuple[Array, Array]:
+    """Points on which an output is inferred, and the sets' grades there.
+
+    Weighted centres (Eq. 3.13) are the centroid over a universe made of the sets' centres, each
+    belonging to its own set alone; so they need no inference of their own.
+
+    Returns
+    -------
+    y : ndarray, shape (n,)
+    grades : ndarray, shape (n_sets, n)
+    """
+    if operators.defuzzification == "weighted-centers":
+        return output.centers(), np.eye(len(output.sets))
+    return output.universe.values, output.memberships()
+
+
+@dataclass(frozen=True)
+class Conclusions:
+    """What the rules say of one output, as arrays over the consequents about it.
+
+    Attributes
+    ----------
+    rule, term : ndarray of int, shape (n_consequents,)
+        Index of the rule, and of the output set it calls.
+    confidence : ndarray, shape (n_consequents,)
+    y, grades : ndarray
+        The output's grid and the grades of its sets there; see `output_grid`.
+    """
+
+    operators: Operators
+    rule: NDArray[np.intp]
+    term: NDArray[np.intp]
+    confidence: Array
+    y: Array
+    grades: Array
+
+    def infer(self, strength: Array) -> Array:
+        """Fuzzy output, shape (n, n_grid), from rule strengths, shape (n, n_rules)."""
+        called = conjoin(self.operators, strength[:, self.rule], self.confidence)
+        if self.operators.disjunction == "sum" and self.operators.conjunction == "min":
+            # The sum of clipped sets does not regroup by set: add rule by rule.
+            fuzzy = np.zeros((len(strength), len(self.y)))
+            for column, term in enumerate(self.term):
+                fuzzy += np.minimum(called[:, column, None], self.grades[term])
+            return fuzzy
+        if self.operators.disjunction == "sum":
+            chosen = np.zeros((len(self.term), len(self.grades)))
+            chosen[np.arange(len(self.term)), self.term] = 1.0
+            return np.asarray((called @ chosen) @ self.grades)
+        fuzzy = np.zeros((len(strength), len(self.y)))
+        for term in np.unique(self.term):
+            level = called[:, self.term == term].max(axis=1)
+            np.maximum(fuzzy, conjoin(self.operators, level[:, None], self.grades[term]), out=fuzzy)
+        return fuzzy
+
+
+def conclusions(rulebase: RuleBase, output: Variable) -> Conclusions:
+    """Collect what the rules say of one output."""
+    rows = [
+        (number, output.index(consequent.set_name), consequent.confidence)
+        for number, rule in enumerate(rulebase.rules)
+        for consequent in rule.consequents
+        if consequent.output == output.name
+    ]
+    rule, term, confidence = zip(*rows, strict=True)
+    y, grades = output_grid(rulebase.operators, output)
+    return Conclusions(
+        rulebase.operators, np.array(rule), np.array(term), np.array(confidence), y, grades
+    )
+
+
+def strengths(
+    rulebase: RuleBase, grades: dict[str, Array], whole: dict[str, Array] | None = None
+) -> Array:
+    """Evaluate the firing strength of every rule (Eq. 3.4).
+
+    Parameters
+    ----------
+    rulebase : RuleBase
+    grades : dict of ndarray
+        For each input, the grades of its sets, shape (n_sets, n).
+    whole : dict of ndarray, optional
+        For each input, its grade of the whole universe, shape (n,): what a fuzzy input gives to
+        a rule that does not name it. One unless given.
+
+    Returns
+    -------
+    ndarray, shape (n, n_rules)
+    """
+    columns = []
+    for rule in rulebase.rules:
+        strength: Array | None = None
+        for name, term in rule.conditions:
+            grade = grades[name][rulebase.input(name).index(term)]
+            strength = grade if strength is None else conjoin(rulebase.operators, strength, grade)
+        for name, grade in (whole or {}).items():
+            if strength is not None and name not in dict(rule.conditions):
+                strength = conjoin(rulebase.operators, strength, grade)
+        columns.append(strength)
+    return np.stack([c for c in columns if c is not None]).T

@@ -1,0 +1,242 @@
+"""A fuzzy system as one straight-line scalar function.
+
+A tracker calls its rule base once an update, so the rule base is written out as Python source with
+its numbers in place: no loops over rules, no look-ups by name, no arrays but constant tables. The
+same function runs in plain Python and, compiled, in the batch runner. Names from rule bases never
+enter the source, only numbers do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.fuzzy.inference import Conclusions, conclusions
+from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.variable import Universe, Variable
+
+__all__ = ["Infer", "infer_function"]
+
+Infer = Callable[[tuple[float, ...]], tuple[float, ...]]
+
+MAX_TABLE = 1_000_000
+
+
+def infer_function(system: FuzzySystem) -> Infer:
+    """Scalar function of a fuzzy system.
+
+    Parameters
+    ----------
+    system : FuzzySystem
+        Its method decides what is written out: the live rules (``exact``), the crisp value of
+        every grid cell (``relation``), or the interpolation table (``table``).
+
+    Returns
+    -------
+    callable
+        ``infer((x1, ..., xm)) -> (y1, ..., yn)``, inputs and outputs in the order of the rule
+        base; floats, not NaN. Outputs are NaN where no rule fires and there is no default.
+
+    Raises
+    ------
+    ValueError
+        If the method cannot be written out: ``exact`` with bisector or maxima, any but ``table``
+        with non-singleton inputs, or a table of more than 1,000,000 cells.
+    """
+    writer = _Writer(system)
+    if not system.fuzzification.is_singleton and system.method != "table":
+        raise ValueError("non-singleton inputs schedule gains with method='table' only")
+    {"exact": writer.exact, "relation": writer.relation, "table": writer.table}[system.method]()
+    return writer.function()
+
+
+class _Writer:
+    """Collects the lines of the function and the constants that it reads."""
+
+    def __init__(self, system: FuzzySystem) -> None:
+        self.system = system
+        self.rules = system.rules
+        self.lines: list[str] = []
+        self.known: dict[tuple[str, ...], str] = {}
+        self.constants: dict[str, Any] = {"exp": math.exp, "nan": math.nan}
+        for k, variable in enumerate(self.rules.inputs):
+            low, high = variable.universe.low, variable.universe.high
+            self.lines.append(f"x{k} = min(max(x[{k}], {low!r}), {high!r})")
+
+    def function(self) -> Infer:
+        outputs = "".join(f"y{k}, " for k in range(len(self.rules.outputs)))
+        body = "\n    ".join([*self.lines, f"return ({outputs})"])
+        namespace = dict(self.constants)
+        exec(compile(f"def infer(x):\n    {body}\n", "<rule base>", "exec"), namespace)
+        infer: Infer = namespace["infer"]
+        return infer
+
+    def constant(self, name: str, values: np.ndarray[Any, np.dtype[np.float64]]) -> None:
+        if values.size > MAX_TABLE:
+            raise ValueError(f"a table of {values.size} cells; at most {MAX_TABLE} are allowed")
+        self.constants[name] = tuple(values.ravel().tolist())
+
+    # ------------------------------------------------------------ exact
+
+    def exact(self) -> None:
+        for k, variable in enumerate(self.rules.inputs):
+            for j, fuzzy_set in enumerate(variable.sets):
+                self.lines.append(f"g{k}_{j} = {fuzzy_set.expression(f'x{k}')}")
+        for r, rule in enumerate(self.rules.rules):
+            grades = [
+                f"g{self.rules.input_names.index(name)}_{self.rules.input(name).index(term)}"
+                for name, term in rule.conditions
+            ]
+            self.lines.append(f"s{r} = {self._and(grades)}")
+        for k, output in enumerate(self.rules.outputs):
+            self._exact_output(k, output)
+
+    def _exact_output(self, k: int, output: Variable) -> None:
+        about = conclusions(self.rules, output)
+        operators = self.rules.operators
+        if operators.defuzzification not in ("centroid", "weighted-centers"):
+            raise ValueError(
+                f"method='exact' schedules gains with centroid or weighted-centers; for "
+                f"{operators.defuzzification} use method='relation' or 'table'"
+            )
+        if operators.disjunction == "sum" and operators.conjunction == "product":
+            moment, total = self._weighted_rules(about)
+        elif operators.defuzzification == "weighted-centers":
+            moment, total = self._weighted_levels(k, about)
+        else:
+            moment, total = self._over_grid(k, about)
+        default = "nan" if output.default is None else repr(output.default)
+        self.lines.append(f"y{k} = {moment} / {total} if {total} > 0.0 else {default}")
+
+    def _weighted_rules(self, about: Conclusions) -> tuple[str, str]:
+        """Product and sum: every rule is a weight (math of Eqs. 3.11 to 3.13).
+
+        y = Σ sᵢ cᵢⱼ Aⱼ ȳⱼ / Σ sᵢ cᵢⱼ Aⱼ with Aⱼ the set's sum of grades and ȳⱼ its centroid.
+        """
+        area = about.grades.sum(axis=1)
+        first = about.grades @ about.y
+        moments, totals = [], []
+        for r in np.unique(about.rule):
+            mine = about.rule == r
+            confidence, term = about.confidence[mine], about.term[mine]
+            moments.append(f"s{r} * {float(confidence @ first[term])!r}")
+            total = float(confidence @ area[term])
+            totals.append(f"s{r}" if total == 1.0 else f"s{r} * {total!r}")
+        return self._sum(moments), self._sum(totals)
+
+    def _weighted_levels(self, k: int, about: Conclusions) -> tuple[str, str]:
+        levels = list(self._levels(k, about))
+        moments = [f"{level} * {float(about.y[term])!r}" for level, term in levels]
+        return self._sum(moments), self._sum([level for level, _ in levels])
+
+    def _over_grid(self, k: int, about: Conclusions) -> tuple[str, str]:
+        """Clipped or overlapping sets: sum over the output's grid (Eq. 3.10)."""
+        levels = list(self._levels(k, about))
+        n_sets = len(about.grades)
+        self.constant(f"B{k}", about.grades.T)
+        self.constant(f"Y{k}", about.y)
+        members = [self._and([level, f"B{k}[{n_sets} * k + {term}]"]) for level, term in levels]
+        self.lines += [
+            f"m{k} = t{k} = 0.0",
+            f"for k in range({len(about.y)}):",
+            f"    b = {self._or(members)}",
+            f"    m{k} = m{k} + b * Y{k}[k]",
+            f"    t{k} = t{k} + b",
+        ]
+        return f"m{k}", f"t{k}"
+
+    def _levels(self, k: int, about: Conclusions) -> Iterator[tuple[str, int]]:
+        """Names of the levels at which output sets are called: by set for max, by rule for sum."""
+        called = [
+            f"s{r}" if c == 1.0 else self._and([f"s{r}", repr(float(c))])
+            for r, c in zip(about.rule, about.confidence, strict=True)
+        ]
+        if self.rules.operators.disjunction == "sum":
+            groups = [
+                ([expression], int(t)) for expression, t in zip(called, about.term, strict=True)
+            ]
+        else:
+            groups = [
+                ([called[i] for i in np.flatnonzero(about.term == t)], int(t))
+                for t in np.unique(about.term)
+            ]
+        for number, (expressions, term) in enumerate(groups):
+            self.lines.append(f"l{k}_{number} = {self._or(expressions)}")
+            yield f"l{k}_{number}", term
+
+    def _and(self, terms: list[str]) -> str:
+        if self.rules.operators.conjunction == "product":
+            return " * ".join(terms)
+        return _nest("min", terms)
+
+    def _or(self, terms: list[str]) -> str:
+        if self.rules.operators.disjunction == "sum":
+            return " + ".join(terms)
+        return _nest("max", terms)
+
+    def _sum(self, terms: list[str]) -> str:
+        """Name of the sum of some terms, written once; long sums in several lines."""
+        key = tuple(terms)
+        if key not in self.known:
+            name = self.known[key] = f"a{len(self.known)}"
+            self.lines.append(f"{name} = {' + '.join(terms[:50])}")
+            for start in range(50, len(terms), 50):
+                self.lines.append(f"{name} = {name} + {' + '.join(terms[start : start + 50])}")
+        return self.known[key]
+
+    # ------------------------------------------------------------ tables
+
+    def relation(self) -> None:
+        universes = [v.universe for v in self.rules.inputs]
+        for k, u in enumerate(universes):
+            place = f"(x{k} - {u.first!r}) / {u.step!r} + 0.5"
+            self.lines.append(f"i{k} = int(min(max({place}, 0.0), {float(u.points - 1)!r}))")
+        self.lines.append(f"i = {_flat_index([u.points for u in universes])}")
+        grid = np.meshgrid(*(u.values for u in universes), indexing="ij")
+        values = self.system.evaluate(np.stack([g.ravel() for g in grid], axis=1))
+        for k, name in enumerate(self.rules.output_names):
+            self.constant(f"T{k}", values[name])
+            self.lines.append(f"y{k} = T{k}[i]")
+
+    def table(self) -> None:
+        table = self.system.table
+        nodes = [len(axis) for axis in table.axes]
+        for k, variable in enumerate(self.rules.inputs):
+            u: Universe = variable.universe
+            step = (u.high - u.low) / (nodes[k] - 1)
+            self.lines += [
+                f"p{k} = (x{k} - {u.low!r}) / {step!r}",
+                f"i{k} = min(int(p{k}), {nodes[k] - 2})",
+                f"f{k} = p{k} - i{k}",
+            ]
+        self.lines.append(f"i = {_flat_index(nodes)}")
+        strides = [math.prod(nodes[k + 1 :]) for k in range(len(nodes))]
+        for k, name in enumerate(self.rules.output_names):
+            self.constant(f"T{k}", table.values[name])
+            self.lines.append(f"y{k} = {_interpolation(f'T{k}', strides, 0, 0)}")
+
+
+def _nest(function: str, terms: list[str]) -> str:
+    expression = terms[0]
+    for term in terms[1:]:
+        expression = f"{function}({expression}, {term})"
+    return expression
+
+
+def _flat_index(lengths: list[int]) -> str:
+    expression = "i0"
+    for k, length in enumerate(lengths[1:], start=1):
+        expression = f"({expression}) * {length} + i{k}"
+    return expression
+
+
+def _interpolation(table: str, strides: list[int], axis: int, offset: int) -> str:
+    """Linear along one axis, each end being the interpolation along the axes that follow."""
+    if axis == len(strides):
+        return f"{table}[i + {offset}]"
+    lower = _interpolation(table, strides, axis + 1, offset)
+    upper = _interpolation(table, strides, axis + 1, offset + strides[axis])
+    return f"((1.0 - f{axis}) * {lower} + f{axis} * {upper})"

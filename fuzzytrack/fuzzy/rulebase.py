@@ -1,0 +1,271 @@
+"""The rule base: variables, rules and operators, checked as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.variable import Variable
+
+__all__ = ["DEFUZZIFICATIONS", "Consequent", "Operators", "Rule", "RuleBase", "TableLayout"]
+
+CONJUNCTIONS = ("product", "min")
+DISJUNCTIONS = ("sum", "max")
+DEFUZZIFICATIONS = ("centroid", "bisector", "mom", "som", "lom", "weighted-centers")
+
+MAX_INPUTS = 8
+MAX_OUTPUTS = 16
+MAX_RULES = 10_000
+
+
+@dataclass(frozen=True)
+class Operators:
+    """The algebra of a rule base (Llinas et al. 1998, Table 3.1).
+
+    Parameters
+    ----------
+    conjunction : {"product", "min"}
+        The AND of Eqs. 3.3 and 3.4, also the composition's.
+    disjunction : {"sum", "max"}
+        The OR of Eq. 3.5, also the composition's. ``sum`` is the plain sum, not a bounded one.
+    defuzzification : {"centroid", "bisector", "mom", "som", "lom", "weighted-centers"}
+        ``centroid`` is the plain sum over the output grid (Eq. 3.10), ``weighted-centers`` the
+        centroid over the sets' centres alone (Eqs. 3.12 and 3.13).
+
+    Raises
+    ------
+    RuleBaseError
+        If a name is unknown.
+    """
+
+    conjunction: str = "product"
+    disjunction: str = "sum"
+    defuzzification: str = "centroid"
+
+    def __post_init__(self) -> None:
+        for role, word, allowed in (
+            ("and", self.conjunction, CONJUNCTIONS),
+            ("or", self.disjunction, DISJUNCTIONS),
+            ("defuzzification", self.defuzzification, DEFUZZIFICATIONS),
+        ):
+            if word not in allowed:
+                raise RuleBaseError(
+                    f"operators: unknown {role} {word!r}; one of {', '.join(allowed)}"
+                )
+
+
+@dataclass(frozen=True)
+class Consequent:
+    """One conclusion of a rule: ``output is set``, with a confidence in [0, 1]."""
+
+    output: str
+    set_name: str
+    confidence: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "confidence", float(self.confidence))
+        if not 0.0 <= self.confidence <= 1.0:
+            raise RuleBaseError(f"confidence must be within [0, 1], got {self.confidence}")
+
+    def __str__(self) -> str:
+        sure = "" if self.confidence == 1.0 else f" @ {self.confidence:g}"
+        return f"{self.output} is {self.set_name}{sure}"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """``if`` every condition holds ``then`` every consequent, each with its confidence.
+
+    Parameters
+    ----------
+    conditions : tuple of (str, str)
+        Pairs (input, set); an input that is not named does not matter.
+    consequents : tuple of Consequent
+        At least one; several for one output share it by their confidences (Eq. 3.12).
+    """
+
+    conditions: tuple[tuple[str, str], ...]
+    consequents: tuple[Consequent, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "conditions", tuple((str(i), str(s)) for i, s in self.conditions))
+        object.__setattr__(self, "consequents", tuple(self.consequents))
+        inputs = [name for name, _ in self.conditions]
+        if not inputs:
+            raise RuleBaseError("a rule needs at least one condition")
+        if len(set(inputs)) < len(inputs):
+            raise RuleBaseError(f"a rule names an input twice: {', '.join(inputs)}")
+        if not self.consequents:
+            raise RuleBaseError("a rule needs at least one consequent")
+        targets = [(c.output, c.set_name) for c in self.consequents]
+        if len(set(targets)) < len(targets):
+            raise RuleBaseError(f"a rule names a consequent twice: {self}")
+
+    def __str__(self) -> str:
+        condition = " and ".join(f"{name} is {term}" for name, term in self.conditions)
+        return f"if {condition} then {', '.join(map(str, self.consequents))}"
+
+
+@dataclass(frozen=True)
+class TableLayout:
+    """That the rules are written as a table: columns and rows are inputs, cells name outputs."""
+
+    columns: str
+    rows: str
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class RuleBase:
+    """A complete, consistent rule base.
+
+    Parameters
+    ----------
+    name : str
+        Short name.
+    inputs, outputs : tuple of Variable
+        At least one of each, all names distinct; at most 8 inputs and 16 outputs.
+    rules : tuple of Rule
+        From 1 to 10,000 rules; no two with the same conditions. Kept with conditions and
+        consequents in the order of the variables, and with a `layout` row by row.
+    operators : Operators
+        AND, OR and defuzzification.
+    source, description : str
+        Where the rule base comes from, and what it is for.
+    scheduler : tuple of (str, str)
+        Settings for the scheduler that uses the outputs as gains; opaque to the fuzzy engine.
+    layout : TableLayout or None
+        How the rules are written: a complete table over exactly two inputs, or None for an
+        if/then list.
+
+    Raises
+    ------
+    RuleBaseError
+        If the parts do not fit; names the offending word and the allowed ones.
+    """
+
+    name: str
+    inputs: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    rules: tuple[Rule, ...]
+    operators: Operators = Operators()
+    source: str = ""
+    description: str = ""
+    scheduler: tuple[tuple[str, str], ...] = ()
+    layout: TableLayout | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("inputs", "outputs", "rules", "scheduler"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        self._check_variables()
+        if not 1 <= len(self.rules) <= MAX_RULES:
+            raise RuleBaseError(f"a rule base needs 1 to {MAX_RULES} rules, got {len(self.rules)}")
+        seen: dict[frozenset[tuple[str, str]], Rule] = {}
+        for rule in self.rules:
+            self._check_rule(rule)
+            key = frozenset(rule.conditions)
+            if key in seen:
+                raise RuleBaseError(f"doubled rule: {rule}; already there: {seen[key]}")
+            seen[key] = rule
+        object.__setattr__(self, "rules", self._in_order())
+        for output in self.outputs:
+            if not any(c.output == output.name for rule in self.rules for c in rule.consequents):
+                raise RuleBaseError(f"no rule concludes about output {output.name!r}")
+
+    def __hash__(self) -> int:
+        # Schedulers are looked up by their rules at every step; hashing all parts would take
+        # longer than the step itself.
+        return hash((self.name, len(self.rules)))
+
+    def _check_variables(self) -> None:
+        if not 1 <= len(self.inputs) <= MAX_INPUTS or not self.outputs:
+            raise RuleBaseError(f"a rule base needs 1 to {MAX_INPUTS} inputs and 1 output or more")
+        if len(self.outputs) > MAX_OUTPUTS:
+            raise RuleBaseError(f"a rule base takes up to {MAX_OUTPUTS} outputs")
+        names = [v.name for v in (*self.inputs, *self.outputs)]
+        doubled = {n for n in names if names.count(n) > 1}
+        if doubled:
+            raise RuleBaseError(f"two variables of one name: {min(doubled)!r}")
+
+    def _check_rule(self, rule: Rule) -> None:
+        for name, term in rule.conditions:
+            self.input(name).index(term)
+        for consequent in rule.consequents:
+            self.output(consequent.output).index(consequent.set_name)
+
+    def _in_order(self) -> tuple[Rule, ...]:
+        """Conditions and consequents in the order of the variables, the rules of a table by row.
+
+        Two rule bases that say the same are then equal, whichever way they were written.
+        """
+        inputs = {v.name: k for k, v in enumerate(self.inputs)}
+        outputs = {v.name: (k, v) for k, v in enumerate(self.outputs)}
+
+        def place(consequent: Consequent) -> tuple[int, int]:
+            number, output = outputs[consequent.output]
+            return number, output.index(consequent.set_name)
+
+        def ordered(rule: Rule) -> Rule:
+            conditions = tuple(sorted(rule.conditions, key=lambda c: inputs[c[0]]))
+            consequents = tuple(sorted(rule.consequents, key=place))
+            same = conditions == rule.conditions and consequents == rule.consequents
+            return rule if same else Rule(conditions, consequents)
+
+        rules = tuple(map(ordered, self.rules))
+        return rules if self.layout is None else self._as_table(rules, self.layout)
+
+    def _as_table(self, rules: tuple[Rule, ...], layout: TableLayout) -> tuple[Rule, ...]:
+        columns, rows = self.input(layout.columns), self.input(layout.rows)
+        if len(self.inputs) != 2 or columns is rows:
+            raise RuleBaseError(
+                "a table is for exactly two inputs, one for columns and one for rows; "
+                f"there are {', '.join(self.input_names)}: write the rules as an if/then list"
+            )
+        if sorted(layout.cells) != sorted(self.output_names):
+            raise RuleBaseError(
+                f"cells of the table must name every output once: {', '.join(self.output_names)}"
+            )
+        cells = {frozenset(rule.conditions): rule for rule in rules}
+        ordered = []
+        for row in rows.set_names:
+            for column in columns.set_names:
+                rule = cells.pop(frozenset({(columns.name, column), (rows.name, row)}), None)
+                if rule is None:
+                    raise RuleBaseError(
+                        f"the table has no cell for {rows.name} {row}, {columns.name} {column}"
+                    )
+                ordered.append(rule)
+        for rule in cells.values():
+            raise RuleBaseError(f"a rule that is no cell of the table: {rule}")
+        return tuple(ordered)
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """Names of the inputs, in order."""
+        return tuple(v.name for v in self.inputs)
+
+    @property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the outputs, in order."""
+        return tuple(v.name for v in self.outputs)
+
+    def input(self, name: str) -> Variable:
+        """Input by name; RuleBaseError names the allowed ones."""
+        return _named(self.inputs, name, "input")
+
+    def output(self, name: str) -> Variable:
+        """Output by name; RuleBaseError names the allowed ones."""
+        return _named(self.outputs, name, "output")
+
+    def uncovered(self, name: str) -> Iterator[tuple[float, float]]:
+        """Stretches of an input, as (low, high), where every membership is zero."""
+        return self.input(name).uncovered()
+
+
+def _named(variables: tuple[Variable, ...], name: str, role: str) -> Variable:
+    for variable in variables:
+        if variable.name == name:
+            return variable
+    allowed = ", ".join(v.name for v in variables)
+    raise RuleBaseError(f"unknown {role} {name!r}; one of {allowed}")

@@ -1,0 +1,361 @@
+"""Rule bases to YAML: written so that the table reads like a table in print."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tempfile
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.cells import CellReader
+from fuzzytrack.fuzzy.loading import loads_rulebase
+from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.reader import FORMAT_VERSION, Reader
+from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase, TableLayout
+from fuzzytrack.fuzzy.variable import Universe, Variable
+from fuzzytrack.fuzzy.yamltree import Document, Node, quoted
+from fuzzytrack.fuzzy.yamltree import Mapping as MappingNode
+
+__all__ = ["dumps_rulebase", "save_rulebase", "set_cell"]
+
+_HEADER = "# yaml-language-server: $schema=rulebase.schema.json"
+_WIDTH = 96
+
+_PLAIN_WORD = re.compile(r"[^\W\d](?:[\w.@-]*[\w@])?")
+_PLAIN_TEXT = re.compile(r"[^\W\d](?:[\w ().,;/%+&*'^-]*[\w).])?")
+# What some YAML reader or other takes for a truth value or nothing.
+_NOT_WORDS = frozenset({"y", "n", "yes", "no", "on", "off", "true", "false", "null"})
+
+
+# -------------------------------------------------------------------- writing
+
+
+def dumps_rulebase(rules: RuleBase) -> str:
+    """Write a rule base as YAML text.
+
+    Parameters
+    ----------
+    rules : RuleBase
+        The rule base.
+
+    Returns
+    -------
+    str
+        Text from which `fuzzytrack.fuzzy.loading.loads_rulebase` makes an equal rule base.
+
+    Raises
+    ------
+    RuleBaseError
+        If the rule base is one that a file may not hold: a name with blanks, sets out of order, a
+        stretch of an input without a rule. Says which, with the place in the text.
+    """
+    text = "\n".join(_lines(rules)) + "\n"
+    if loads_rulebase(text, f"<{rules.name}>") != rules:
+        raise RuleBaseError(f"rule base {quoted(rules.name)} cannot be written as YAML")
+    return text
+
+
+def save_rulebase(rules: RuleBase, path: str | os.PathLike[str]) -> None:
+    """Write a rule base to a file, whole or not at all.
+
+    Parameters
+    ----------
+    rules : RuleBase
+        The rule base.
+    path : str or path
+        The file; replaced if it exists.
+
+    Raises
+    ------
+    RuleBaseError
+        See `dumps_rulebase`; the file is then as it was.
+    OSError
+        If the file cannot be written; it is then as it was.
+    """
+    text = dumps_rulebase(rules)
+    target = Path(path).resolve()
+    handle, draft = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
+    try:
+        with open(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+        # mkstemp makes files that nobody else may read.
+        os.chmod(draft, _mode(target))
+        os.replace(draft, target)
+    except BaseException:
+        os.unlink(draft)
+        raise
+
+
+def _mode(target: Path) -> int:
+    try:
+        return target.stat().st_mode & 0o777
+    except FileNotFoundError:
+        return 0o644
+
+
+def _lines(rules: RuleBase) -> Iterator[str]:
+    yield _HEADER
+    yield f"rulebase: {FORMAT_VERSION}"
+    for key in ("name", "description", "source"):
+        if getattr(rules, key):
+            yield from _prose(key, getattr(rules, key))
+    for role, variables in (("inputs", rules.inputs), ("outputs", rules.outputs)):
+        yield ""
+        yield f"{role}:"
+        for variable in variables:
+            yield from _variable(variable)
+    operators = rules.operators
+    yield ""
+    yield (
+        f"operators: {{and: {operators.conjunction}, or: {operators.disjunction}, "
+        f"defuzzification: {operators.defuzzification}}}"
+    )
+    yield ""
+    yield "rules:"
+    yield from _table(rules, rules.layout) if rules.layout else _list(rules)
+    if rules.scheduler:
+        pairs = ", ".join(f"{_word(key)}: {_word(value)}" for key, value in rules.scheduler)
+        yield ""
+        yield f"scheduler: {{{pairs}}}"
+
+
+def _prose(key: str, text: str) -> Iterator[str]:
+    """Long running text folded, anything else on one line."""
+    if len(text) < _WIDTH - len(key) or text != " ".join(text.split()):
+        yield f"{key}: {_text(text)}"
+        return
+    yield f"{key}: >-"
+    lines = textwrap.wrap(text, _WIDTH, break_long_words=False, break_on_hyphens=False)
+    yield from (f"  {line}" for line in lines)
+
+
+def _variable(variable: Variable) -> Iterator[str]:
+    yield f"  {_word(variable.name)}:"
+    for key in ("label", "unit"):
+        if getattr(variable, key):
+            yield f"    {key}: {_text(getattr(variable, key))}"
+    yield f"    universe: {_universe(variable.universe)}"
+    if variable.default is not None:
+        yield f"    default: {_number(variable.default)}"
+    yield "    sets:"
+    width = max(len(_word(name)) for name in variable.set_names)
+    for fuzzy_set in variable.sets:
+        yield f"      {_word(fuzzy_set.name) + ':':<{width + 1}} {_shape(fuzzy_set)}"
+
+
+def _universe(universe: Universe) -> str:
+    low, high = _number(universe.low), _number(universe.high)
+    if universe.grid == "ends":
+        return f"[{low}, {high}, {universe.points}]"
+    return f"{{low: {low}, high: {high}, points: {universe.points}, grid: {universe.grid}}}"
+
+
+def _shape(fuzzy_set: FuzzySet) -> str:
+    parameters = ", ".join(map(_number, fuzzy_set.parameters))
+    return f"{{{fuzzy_set.shape}: [{parameters}]}}"
+
+
+def _table(rules: RuleBase, layout: TableLayout) -> Iterator[str]:
+    columns, rows = rules.input(layout.columns), rules.input(layout.rows)
+    yield f"  columns: {_word(layout.columns)}"
+    yield f"  rows: {_word(layout.rows)}"
+    yield f"  cells: [{', '.join(map(_word, layout.cells))}]"
+    yield "  table:"
+    cells = [_cell(rule, layout.cells, rules) for rule in rules.rules]
+    count = len(columns.sets)
+    lines = [cells[start : start + count] for start in range(0, len(cells), count)]
+    widths = [
+        max(len(name), *(len(line[k]) + 1 for line in lines)) + 1
+        for k, name in enumerate(columns.set_names)
+    ]
+    margin = max(len(_word(name)) for name in rows.set_names) + 1
+    heads = "".join(
+        f"{name:<{width}}" for name, width in zip(columns.set_names, widths, strict=True)
+    )
+    yield f"    #{' ' * margin} {heads}".rstrip()
+    for name, line in zip(rows.set_names, lines, strict=True):
+        ends = [f"{cell}," for cell in line[:-1]] + [line[-1]]
+        row = "".join(f"{cell:<{width}}" for cell, width in zip(ends, widths, strict=True))
+        yield f"    {_word(name) + ':':<{margin}} [{row.rstrip()}]"
+
+
+def _list(rules: RuleBase) -> Iterator[str]:
+    conditions = [
+        ", ".join(f"{_word(name)}: {_word(term)}" for name, term in rule.conditions)
+        for rule in rules.rules
+    ]
+    width = max(map(len, conditions)) + len("{},")
+    for rule, condition in zip(rules.rules, conditions, strict=True):
+        either = f"{{{condition}}},"
+        yield f"  - {{if: {either:<{width}} then: {_by_output(rule.consequents)}}}"
+
+
+# -------------------------------------------------------------------- cells
+
+
+def _says(text: str, order: tuple[str, ...], rules: RuleBase) -> tuple[Consequent, ...]:
+    """Read a cell on its own."""
+    document = Document(text, "<cell>")
+    outputs = {variable.name: variable for variable in rules.outputs}
+    return CellReader(document, outputs).read(document.root, order)
+
+
+def _cell(rule: Rule, order: tuple[str, ...], rules: RuleBase) -> str:
+    """Shortest of the three forms of a cell that says what the rule says."""
+    for text in (_joint(rule.consequents, order), _shares(rule.consequents, order)):
+        if text is None:
+            continue
+        try:
+            said = _says(text, order, rules)
+        except RuleBaseError:
+            continue  # a name with a hyphen, that could be split in two ways
+        if set(said) == set(rule.consequents):
+            return text
+    return _by_output(rule.consequents)
+
+
+def _joint(consequents: Iterable[Consequent], order: tuple[str, ...]) -> str | None:
+    """``S-L@0.5``, if there is one set for each output and one confidence for all."""
+    names = {c.output: c.set_name for c in consequents}
+    confidences = {c.confidence for c in consequents}
+    if set(names) != set(order) or len(confidences) > 1:
+        return None
+    return _word("-".join(names[output] for output in order) + _sure(confidences.pop()))
+
+
+def _shares(consequents: tuple[Consequent, ...], order: tuple[str, ...]) -> str | None:
+    """``[S-L@0.5, M-L@0.5]``, if only one output has several sets."""
+    sets = {name: [c for c in consequents if c.output == name] for name in order}
+    several = [name for name in order if len(sets[name]) > 1]
+    if len(several) != 1 or not all(sets.values()):
+        return None
+    (divided,) = several
+    words = []
+    for share in sets[divided]:
+        others = [replace(sets[n][0], confidence=share.confidence) for n in order if n != divided]
+        words.append(_joint([*others, share], order))
+    return f"[{', '.join(word for word in words if word)}]"
+
+
+def _by_output(consequents: Iterable[Consequent]) -> str:
+    """``{stiffness: [S@0.5, M@0.5], damping: L}``."""
+    words: dict[str, list[str]] = {}
+    for consequent in consequents:
+        word = _word(consequent.set_name + _sure(consequent.confidence))
+        words.setdefault(consequent.output, []).append(word)
+    pairs = (
+        f"{_word(output)}: {found[0] if len(found) == 1 else '[' + ', '.join(found) + ']'}"
+        for output, found in words.items()
+    )
+    return f"{{{', '.join(pairs)}}}"
+
+
+def _sure(confidence: float) -> str:
+    return "" if confidence == 1.0 else f"@{_number(confidence)}"
+
+
+# -------------------------------------------------------------------- scalars
+
+
+def _number(value: float) -> str:
+    return repr(float(value)).removesuffix(".0")
+
+
+def _word(word: str) -> str:
+    """Write a word of the model, in quotes where a YAML reader could take it for another thing."""
+    plain = _PLAIN_WORD.fullmatch(word) and word.casefold() not in _NOT_WORDS
+    return word if plain else json.dumps(word, ensure_ascii=False)
+
+
+def _text(text: str) -> str:
+    """Write running text in a block, in quotes where it needs them."""
+    plain = _PLAIN_TEXT.fullmatch(text) and text.casefold() not in _NOT_WORDS
+    return text if plain else json.dumps(text, ensure_ascii=False)
+
+
+# -------------------------------------------------------------------- changing one cell
+
+
+def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>") -> str:
+    """Change one cell of a table, or the consequents of one rule, and nothing else in the text.
+
+    Parameters
+    ----------
+    text : str
+        A rule base in YAML.
+    where : mapping
+        Input to set, e.g. ``{"dE": "ns", "E": "pl"}``: the conditions of the rule, all of them.
+    cell : str
+        What the rule is to say, as it would stand in a table: ``M-Z``, ``M-Z@0.5`` or
+        ``[S-L@0.5, M-L@0.5]``, the outputs in the order of the table's ``cells`` (without a table,
+        in the order in which the rule names them); or ``{stiffness: M, damping: Z}``.
+    file : str
+        Name for messages.
+
+    Returns
+    -------
+    str
+        The text, every byte outside that cell as it was.
+
+    Raises
+    ------
+    RuleBaseError
+        If the text, before or after, is no rule base, there is no such rule, or the rule shares
+        its consequents with others (``if any``, anchors).
+    """
+    mark = "\ufeff" if text.startswith("\ufeff") else ""
+    body = text.removeprefix(mark)
+    reader = Reader(Document(body, file))
+    before = reader.rulebase()
+    key = _conditions(before, where)
+    if key not in reader.rule_nodes:
+        raise RuleBaseError(f"no rule has just the conditions {_spelt(where)}")
+    node, shared = reader.rule_nodes[key]
+    if shared or node.anchored or _inside_anchor(reader.document, node):
+        raise reader.document.error(
+            node, f"other rules share what the rule for {_spelt(where)} says; write it out first"
+        )
+    order = before.layout.cells if before.layout else before.output_names
+    if before.layout is None and isinstance(node, MappingNode):
+        order = tuple(node.entries)
+    wanted = _says(cell, order, before)
+    if isinstance(node, MappingNode) and not cell.strip().startswith("{"):
+        cell = _by_output(wanted)
+    result = body[: node.start] + cell.strip() + body[node.end :]
+    after = loads_rulebase(result, file)
+    expected = tuple(
+        replace(rule, consequents=wanted) if frozenset(rule.conditions) == key else rule
+        for rule in before.rules
+    )
+    if after != replace(before, rules=expected):
+        raise reader.document.error(node, f"{quoted(cell)} changes more than one cell")
+    return mark + result
+
+
+def _conditions(rules: RuleBase, where: Mapping[str, str]) -> frozenset[tuple[str, str]]:
+    for name, term in where.items():
+        rules.input(name).index(term)
+    return frozenset(where.items())
+
+
+def _spelt(where: Mapping[str, str]) -> str:
+    return ", ".join(f"{name}={term}" for name, term in where.items())
+
+
+def _inside_anchor(document: Document, node: Node) -> bool:
+    """Whether a node lies in a collection that aliases repeat elsewhere."""
+    stack = [document.root]
+    while stack:
+        outer = stack.pop()
+        if outer.anchored and outer.start <= node.start < outer.end:
+            return True
+        if isinstance(outer, MappingNode):
+            stack.extend(value for _, value in outer.entries.values())
+        else:
+            stack.extend(getattr(outer, "items", ()))
+    return False

@@ -1,0 +1,272 @@
+"""JSON Schema of rule-base files, made from the model, so that editors complete and explain."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fuzzytrack.fuzzy.membership import SHAPES
+from fuzzytrack.fuzzy.reader import (
+    FORMAT_VERSION,
+    MAX_NAME,
+    SCHEDULER_KEYS,
+    SET_NAME,
+    VARIABLE_NAME,
+)
+from fuzzytrack.fuzzy.rulebase import (
+    CONJUNCTIONS,
+    DEFUZZIFICATIONS,
+    DISJUNCTIONS,
+    MAX_INPUTS,
+    MAX_OUTPUTS,
+    MAX_RULES,
+)
+from fuzzytrack.fuzzy.variable import GRIDS, MAX_POINTS
+
+__all__ = ["dumps_schema", "rulebase_schema"]
+
+Schema = dict[str, Any]
+
+_SCHEDULER = {
+    "normalization": "How innovations become the inputs, e.g. chan.",
+    "gains": "What the outputs are, e.g. w-domain or direct.",
+}
+
+
+def rulebase_schema() -> Schema:
+    """JSON Schema (2020-12) of the rule-base format.
+
+    Returns
+    -------
+    dict
+        The schema. It knows the words and shapes of the format; whether the words fit each other
+        only loading can tell.
+    """
+    properties = {
+        "rulebase": {"description": "Version of the format.", "const": int(FORMAT_VERSION)},
+        "name": _text("Short name."),
+        "description": _text("What the rule base is for."),
+        "source": _text("Where it comes from."),
+        "inputs": _variables("Inputs, by name.", MAX_INPUTS, _variable()),
+        "outputs": _variables("Outputs, by name.", MAX_OUTPUTS, _variable(output=True)),
+        "operators": _operators(),
+        "rules": {
+            "description": "A table over two inputs, or a list of if/then rules.",
+            "oneOf": [_table(), _list()],
+        },
+        "scheduler": _closed(
+            "How a gain scheduler uses the rule base.",
+            {key: _text(_SCHEDULER[key]) for key in SCHEDULER_KEYS},
+            required=(),
+        ),
+    }
+    optional = {"description", "source", "scheduler"}
+    top = _closed(
+        "A fuzzy rule base of fuzzytrack.",
+        properties,
+        tuple(k for k in properties if k not in optional),
+    )
+    head = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "fuzzytrack rule base",
+    }
+    return {**head, **top, "$defs": _definitions()}
+
+
+def dumps_schema() -> str:
+    """Text of ``rulebase.schema.json``."""
+    return json.dumps(rulebase_schema(), indent=2, ensure_ascii=False) + "\n"
+
+
+def _closed(description: str, properties: Schema, required: tuple[str, ...]) -> Schema:
+    return {
+        "description": description,
+        "type": "object",
+        "properties": properties,
+        "required": list(required),
+        "additionalProperties": False,
+        "minProperties": 1,
+    }
+
+
+def _text(description: str) -> Schema:
+    return {"description": description, "type": "string", "minLength": 1}
+
+
+def _number(description: str) -> Schema:
+    return {"description": description, "type": "number"}
+
+
+def _reference(name: str) -> Schema:
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _variables(description: str, limit: int, variable: Schema) -> Schema:
+    return {
+        "description": description,
+        "type": "object",
+        "minProperties": 1,
+        "maxProperties": limit,
+        "propertyNames": {"pattern": f"^{VARIABLE_NAME}$", "maxLength": MAX_NAME},
+        "additionalProperties": variable,
+    }
+
+
+def _variable(output: bool = False) -> Schema:
+    properties = {
+        "label": _text("For axes and tables."),
+        "unit": _text('Unit, for axes and tables; "1" for a pure number.'),
+        "universe": _reference("universe"),
+        "sets": {
+            "description": "Fuzzy sets, by name, in ascending order of their peaks.",
+            "type": "object",
+            "minProperties": 1,
+            "propertyNames": {"pattern": f"^{SET_NAME}$", "maxLength": MAX_NAME},
+            "additionalProperties": _reference("set"),
+        },
+    }
+    if output:
+        properties["default"] = _number("Value where no rule fires; NaN and a warning without it.")
+    return _closed("A linguistic variable.", properties, ("universe", "sets"))
+
+
+def _operators() -> Schema:
+    words = {
+        "and": ("Conjunction, also of a rule with its consequents.", CONJUNCTIONS),
+        "or": ("Disjunction of the rules; sum is the plain sum.", DISJUNCTIONS),
+        "defuzzification": ("From the fuzzy output to one value.", DEFUZZIFICATIONS),
+    }
+    properties = {
+        key: {"description": description, "enum": list(allowed)}
+        for key, (description, allowed) in words.items()
+    }
+    return _closed("The algebra of the rules.", properties, tuple(words))
+
+
+def _definitions() -> Schema:
+    return {
+        "universe": _universe(),
+        "set": {
+            **_closed("A membership shape.", {name: _shape(name) for name in SHAPES}, ()),
+            "maxProperties": 1,
+        },
+        "word": {
+            "description": "One set for each output, joined by '-', e.g. S-L; with a confidence "
+            "from 0 to 1, S-L@0.5.",
+            # Names such as 1 are numbers to an editor.
+            "type": ["string", "number"],
+            "pattern": f"^{SET_NAME}(@[-+.0-9eE]+)?$",
+        },
+        "consequents": {
+            "description": "What a rule concludes.",
+            "oneOf": [
+                _reference("word"),
+                _words("Several conclusions, which share the rule by their confidences."),
+                {
+                    "description": "For each output a set, or several.",
+                    "type": "object",
+                    "minProperties": 1,
+                    "propertyNames": {"pattern": f"^{VARIABLE_NAME}$"},
+                    "additionalProperties": {
+                        "oneOf": [_reference("word"), _words("Several sets of one output.")]
+                    },
+                },
+            ],
+        },
+        "conditions": {
+            "description": "For each input that matters, its set.",
+            "type": "object",
+            "minProperties": 1,
+            "propertyNames": {"pattern": f"^{VARIABLE_NAME}$"},
+            "additionalProperties": {"type": ["string", "number"], "pattern": f"^{SET_NAME}$"},
+        },
+    }
+
+
+def _words(description: str) -> Schema:
+    return {
+        "description": description,
+        "type": "array",
+        "minItems": 1,
+        "items": _reference("word"),
+    }
+
+
+def _universe() -> Schema:
+    low, high = _number("Lower end."), _number("Upper end.")
+    points = {
+        "description": "Number of grid points.",
+        "type": "integer",
+        "minimum": 2,
+        "maximum": MAX_POINTS,
+    }
+    grid = {
+        "description": "Whether both ends are grid points, or the midpoints of equal cells are.",
+        "enum": list(GRIDS),
+    }
+    brief = {
+        "description": "low, high, points",
+        "type": "array",
+        "prefixItems": [low, high, points],
+        "items": False,
+        "minItems": 3,
+    }
+    full = _closed(
+        "The same, with a choice of grid.",
+        {"low": low, "high": high, "points": points, "grid": grid},
+        ("low", "high", "points"),
+    )
+    return {"description": "The discrete universe of discourse.", "oneOf": [brief, full]}
+
+
+def _shape(name: str) -> Schema:
+    shape = SHAPES[name]
+    count = len(shape.parameters)
+    return {
+        "description": f"{name}: {', '.join(shape.parameters)}; {shape.requirement}",
+        "type": "array",
+        "prefixItems": [_number(parameter) for parameter in shape.parameters],
+        "items": False,
+        "minItems": count,
+    }
+
+
+def _table() -> Schema:
+    row = {"type": "array", "minItems": 1, "items": _reference("consequents")}
+    names = {"type": "string", "minLength": 1}
+    properties = {
+        "columns": _text("The input whose sets, in order, are the columns."),
+        "rows": _text("The input whose sets name the rows."),
+        "cells": {
+            "description": "The outputs, in the order in which a cell names their sets.",
+            "oneOf": [names, {"type": "array", "minItems": 1, "uniqueItems": True, "items": names}],
+        },
+        "table": {
+            "description": "For each row its cells, one a column.",
+            "type": "object",
+            "minProperties": 1,
+            "additionalProperties": row,
+        },
+    }
+    return _closed("Rules as a table.", properties, tuple(properties))
+
+
+def _list() -> Schema:
+    consequents = _reference("consequents")
+    every = _closed(
+        "If every condition holds.",
+        {"if": _reference("conditions"), "then": consequents},
+        ("if", "then"),
+    )
+    either = _closed(
+        "One rule for each condition.",
+        {"if any": _reference("conditions"), "then": consequents},
+        ("if any", "then"),
+    )
+    return {
+        "description": "Rules as a list.",
+        "type": "array",
+        "minItems": 1,
+        "maxItems": MAX_RULES,
+        "items": {"oneOf": [every, either]},
+    }

@@ -1,0 +1,379 @@
+"""The fuzzy system: a rule base that can be evaluated, explained and drawn."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzytrack.errors import NoRuleFiresWarning
+from fuzzytrack.fuzzy.defuzzification import defuzzify
+from fuzzytrack.fuzzy.fuzzification import Fuzzification
+from fuzzytrack.fuzzy.inference import Conclusions, conclusions, disjoin, output_grid, strengths
+from fuzzytrack.fuzzy.inference import conjoin as _conjoin
+from fuzzytrack.fuzzy.relation import compose, relation
+from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
+from fuzzytrack.fuzzy.table import InterpolationTable, build_table, default_nodes
+
+__all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
+
+Array = NDArray[np.float64]
+
+METHODS = ("exact", "relation", "table")
+# Points at a time: the arrays of one chunk stay in the processor cache.
+_CHUNK = 4_096
+
+
+@dataclass(frozen=True)
+class FiredRule:
+    """A rule with the strength at which it fires; see `FuzzySystem.explain`."""
+
+    number: int
+    strength: float
+    rule: Rule
+
+    def __str__(self) -> str:
+        return f"{self.strength:.4f}  {self.rule}"
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Control surface of one output over two inputs.
+
+    Attributes
+    ----------
+    x_name, y_name, output : str
+        The two inputs and the output.
+    x : ndarray, shape (nx,)
+    y : ndarray, shape (ny,)
+    values : ndarray, shape (nx, ny)
+        ``values[i, j]`` is the output at ``x[i]``, ``y[j]``.
+    """
+
+    x_name: str
+    y_name: str
+    output: str
+    x: Array
+    y: Array
+    values: Array
+
+
+class FuzzySystem:
+    """Evaluates a rule base.
+
+    Parameters
+    ----------
+    rules : RuleBase
+        The rule base.
+    method : {"exact", "relation", "table"}
+        ``exact`` evaluates the membership functions at the input itself and only the rules that
+        fire; ``relation`` reads the discrete relational matrix at the nearest grid point (Llinas
+        et al. 1998, Eqs. 3.2 to 3.10, literally), and equals ``exact`` on grid points; ``table``
+        interpolates a table of ``exact`` values, see `table_bounds`.
+    fuzzification : Fuzzification, optional
+        Singleton unless given.
+    table_nodes : int, optional
+        Nodes an input for ``method="table"``; 2001 for one input, 201 for two, and fewer for more
+        (about 40,000 in all) unless given.
+
+    Raises
+    ------
+    ValueError
+        If the method is unknown, or the algebra does not allow it (see Notes).
+
+    Notes
+    -----
+    Inputs outside their universe are taken at its nearest end; a NaN input gives NaN. With
+    non-singleton inputs ``exact`` uses that the composition factorises over the sets, which holds
+    for every algebra but min with sum; there ``relation`` has to be used.
+    """
+
+    def __init__(
+        self,
+        rules: RuleBase,
+        method: str = "exact",
+        *,
+        fuzzification: Fuzzification | None = None,
+        table_nodes: int | None = None,
+    ) -> None:
+        if method not in METHODS:
+            raise ValueError(f"method: unknown {method!r}; one of {', '.join(METHODS)}")
+        self.rules = rules
+        self.method = method
+        self.fuzzification = fuzzification or Fuzzification()
+        self.table_nodes = default_nodes(len(rules.inputs)) if table_nodes is None else table_nodes
+        if not self.fuzzification.is_singleton:
+            for variable in rules.inputs:
+                self.fuzzification.check(variable)
+            algebra = (rules.operators.conjunction, rules.operators.disjunction)
+            if algebra == ("min", "sum") and method != "relation":
+                raise ValueError(
+                    "method: with non-singleton inputs, min and sum do not factorise; "
+                    "use method='relation'"
+                )
+        if method == "table":
+            _ = self._table
+
+    def __repr__(self) -> str:
+        return f"FuzzySystem({self.rules.name!r}, method={self.method!r})"
+
+    # ---------------------------------------------------------------- evaluation
+
+    def __call__(self, /, **inputs: ArrayLike) -> dict[str, float | Array]:
+        """Evaluate every output.
+
+        Parameters
+        ----------
+        **inputs : array_like
+            One value an input, by name; they broadcast.
+
+        Returns
+        -------
+        dict
+            For each output a float, or an array of the broadcast shape.
+
+        Raises
+        ------
+        TypeError
+            If an input is missing or unknown.
+
+        Warns
+        -----
+        NoRuleFiresWarning
+            Where no rule fires and the output has no default: the value is NaN.
+        """
+        points, shape = self._points(inputs)
+        values = self.evaluate(points)
+        self._warn_where_empty(points, values)
+        if shape == ():
+            return {name: float(v[0]) for name, v in values.items()}
+        return {name: v.reshape(shape) for name, v in values.items()}
+
+    def evaluate(self, points: Array) -> dict[str, Array]:
+        """Evaluate at `points`, shape (n, n_inputs), columns in the order of the inputs.
+
+        Gives no warning.
+        """
+        evaluate = {
+            "exact": self._evaluate_exact,
+            "relation": self._evaluate_relation,
+            "table": self._evaluate_table,
+        }[self.method]
+        return self._in_chunks(points, evaluate)
+
+    def _in_chunks(self, points: Array, evaluate: object) -> dict[str, Array]:
+        universes = [v.universe for v in self.rules.inputs]
+        clipped = np.stack([u.clip(points[:, k]) for k, u in enumerate(universes)], axis=1)
+        known = ~np.any(np.isnan(clipped), axis=1)
+        result = {name: np.full(len(points), np.nan) for name in self.rules.output_names}
+        for start in range(0, len(points), _CHUNK):
+            rows = np.flatnonzero(known[start : start + _CHUNK]) + start
+            if len(rows):
+                for name, values in evaluate(clipped[rows]).items():  # type: ignore[operator]
+                    result[name][rows] = values
+        return result
+
+    def _points(self, inputs: Mapping[str, ArrayLike]) -> tuple[Array, tuple[int, ...]]:
+        names = self.rules.input_names
+        if set(inputs) != set(names):
+            got = ", ".join(inputs) or "none"
+            raise TypeError(f"inputs: expected {', '.join(names)}; got {got}")
+        arrays = np.broadcast_arrays(*(np.asarray(inputs[n], dtype=np.float64) for n in names))
+        return np.stack([a.ravel() for a in arrays], axis=1), arrays[0].shape
+
+    def _warn_where_empty(self, points: Array, values: dict[str, Array]) -> None:
+        known = ~np.isnan(points).any(axis=1)
+        for name, result in values.items():
+            rows = np.flatnonzero(np.isnan(result) & known)
+            if len(rows):
+                where = _place(self.rules.input_names, points[rows[0]])
+                more = f" and at {len(rows) - 1} more points" if len(rows) > 1 else ""
+                warnings.warn(
+                    f"{self.rules.name}: no rule about {name} fires at {where}{more}: NaN; "
+                    "add a rule, or give the output a default",
+                    NoRuleFiresWarning,
+                    stacklevel=3,
+                )
+
+    def _evaluate_exact(self, points: Array) -> dict[str, Array]:
+        strength = self.strengths(points)
+        return {
+            name: self._crisp(name, self._conclusions[name].infer(strength))
+            for name in self.rules.output_names
+        }
+
+    def _evaluate_relation(self, points: Array) -> dict[str, Array]:
+        inputs = self.rules.inputs
+        result = {}
+        for name in self.rules.output_names:
+            matrix = self.relation(name)
+            if self.fuzzification.is_singleton:
+                # Eq. 3.9: the column of the nearest grid point
+                cell = tuple(v.universe.nearest(points[:, k]) for k, v in enumerate(inputs))
+                fuzzy = matrix[cell]
+            else:
+                spread = [
+                    self.fuzzification.membership(v, points[:, k]) for k, v in enumerate(inputs)
+                ]
+                fuzzy = np.stack(
+                    [
+                        compose(self.rules, matrix, [s[row] for s in spread])
+                        for row in range(len(points))
+                    ]
+                )
+            result[name] = self._crisp(name, fuzzy)
+        return result
+
+    def _evaluate_table(self, points: Array) -> dict[str, Array]:
+        return self._table(points)
+
+    def _crisp(self, name: str, fuzzy: Array) -> Array:
+        operators = self.rules.operators
+        output = self.rules.output(name)
+        y, _ = output_grid(operators, output)
+        values = defuzzify(operators.defuzzification, y, fuzzy)
+        if output.default is None:
+            return values
+        return np.where(np.isnan(values), output.default, values)
+
+    # ---------------------------------------------------------------- why
+
+    def strengths(self, points: Array) -> Array:
+        """Evaluate the strength of every rule: (n, n_rules) from points of (n, n_inputs)."""
+        grades, whole = {}, {}
+        for k, variable in enumerate(self.rules.inputs):
+            x = variable.universe.clip(points[:, k])
+            if self.fuzzification.is_singleton:
+                grades[variable.name] = variable.memberships(x)
+                continue
+            # sup or sum over x of μ_A'(x) and μ_A(x): the composition, one input at a time
+            spread = self.fuzzification.membership(variable, x)
+            met = _conjoin(
+                self.rules.operators, variable.memberships()[:, None, :], spread[None, :, :]
+            )
+            grades[variable.name] = disjoin(self.rules.operators, met, -1)
+            whole[variable.name] = disjoin(self.rules.operators, spread, -1)
+        return strengths(self.rules, grades, whole)
+
+    def explain(self, /, **inputs: float) -> list[FiredRule]:
+        """Rules that fire at a point, strongest first.
+
+        Parameters
+        ----------
+        **inputs : float
+            One number an input, by name.
+
+        Returns
+        -------
+        list of FiredRule
+            Strength (before confidence), rule and its number from 1; equal strengths in the order
+            of the rules.
+
+        Raises
+        ------
+        TypeError
+            If an input is missing or unknown, or is an array.
+        """
+        points, shape = self._points(inputs)
+        if shape != ():
+            raise TypeError("explain takes one point; give a number for each input")
+        strength = self.strengths(points)[0]
+        fired = [
+            FiredRule(k + 1, float(s), self.rules.rules[k]) for k, s in enumerate(strength) if s > 0
+        ]
+        return sorted(fired, key=lambda f: (-f.strength, f.number))
+
+    # ---------------------------------------------------------------- data
+
+    @cached_property
+    def _conclusions(self) -> dict[str, Conclusions]:
+        return {v.name: conclusions(self.rules, v) for v in self.rules.outputs}
+
+    @cached_property
+    def _relations(self) -> dict[str, Array]:
+        return {}
+
+    @cached_property
+    def _table(self) -> InterpolationTable:
+        def exact(points: Array) -> dict[str, Array]:
+            return self._in_chunks(points, self._evaluate_exact)
+
+        return build_table(self.rules, exact, self.table_nodes)
+
+    @property
+    def table(self) -> InterpolationTable:
+        """The interpolation table, built at first use."""
+        return self._table
+
+    @property
+    def table_bounds(self) -> dict[str, float]:
+        """Error bound of ``method="table"`` for each output, measured when the table was built."""
+        return dict(self._table.bounds)
+
+    def relation(self, output: str) -> Array:
+        """Relational matrix μ_R(x, y) of one output; see `fuzzytrack.fuzzy.relation.relation`."""
+        if output not in self._relations:
+            matrix = relation(self.rules, self.rules.output(output))
+            matrix.flags.writeable = False
+            self._relations[output] = matrix
+        return self._relations[output]
+
+    def surface(
+        self,
+        output: str,
+        points: int = 101,
+        *,
+        inputs: tuple[str, str] | None = None,
+        at: Mapping[str, float] | None = None,
+    ) -> Surface:
+        """Control surface of one output over two inputs.
+
+        Parameters
+        ----------
+        output : str
+            Name of the output.
+        points : int
+            Points an axis, at least 2.
+        inputs : (str, str), optional
+            The two inputs; the first two unless given.
+        at : mapping, optional
+            Values of the other inputs.
+
+        Returns
+        -------
+        Surface
+
+        Raises
+        ------
+        ValueError
+            If the rule base has one input, `inputs` are not two different ones, a value in `at`
+            is missing or too many, or `points` is below 2.
+        """
+        self.rules.output(output)
+        names = inputs or self.rules.input_names[:2]
+        if len(self.rules.inputs) < 2:
+            raise ValueError(f"surface: {self.rules.name} has one input; a surface needs two")
+        if points < 2:
+            raise ValueError(f"surface: points must be at least 2, got {points}")
+        if len(names) != 2 or names[0] == names[1]:
+            raise ValueError(f"surface: inputs must be two different inputs, got {names}")
+        universes = [self.rules.input(name).universe for name in names]
+        fixed = dict(at or {})
+        others = [name for name in self.rules.input_names if name not in names]
+        if set(fixed) != set(others):
+            raise ValueError(
+                f"surface: at must give {', '.join(others) or 'nothing'}; "
+                f"got {', '.join(fixed) or 'nothing'}"
+            )
+        axes = [np.linspace(u.low, u.high, points) for u in universes]
+        grid = dict(zip(names, np.meshgrid(*axes, indexing="ij"), strict=True))
+        values = self(**grid, **fixed)[output]
+        return Surface(names[0], names[1], output, axes[0], axes[1], np.asarray(values))
+
+
+def _place(names: tuple[str, ...], point: Array) -> str:
+    return ", ".join(f"{n}={x:.6g}" for n, x in zip(names, point, strict=True))

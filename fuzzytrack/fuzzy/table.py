@@ -1,0 +1,123 @@
+"""Interpolated look-up table of a fuzzy system, with an error bound measured when it is built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.fuzzy.rulebase import RuleBase
+
+__all__ = ["InterpolationTable", "build_table", "default_nodes"]
+
+Array = NDArray[np.float64]
+
+MAX_NODES = 4_000_000
+# With three, a kink is met at 3/4 of its height or more on each axis: twice the largest difference
+# covers it on two axes.
+PROBES_PER_CELL = 3
+
+
+@dataclass(frozen=True, eq=False)
+class InterpolationTable:
+    """Values of every output at the nodes of a regular grid over the inputs.
+
+    Attributes
+    ----------
+    axes : tuple of ndarray
+        Equally spaced nodes of each input, both ends included.
+    values : dict of ndarray
+        For each output its values at the nodes, in the order of `axes`.
+    bounds : dict of float
+        For each output twice the largest difference from the tabulated function met at build,
+        over a net of probes inside the cells. A bound for functions that are smooth between the
+        probes; where an output jumps (``mom``, a default), it is of the size of the jump, and
+        infinite where the table has cells in which a rule fires at some points only.
+    """
+
+    axes: tuple[Array, ...]
+    values: dict[str, Array]
+    bounds: dict[str, float]
+
+    def __call__(self, points: Array) -> dict[str, Array]:
+        """Multilinear interpolation at `points`, shape (n, n_inputs), all within the axes."""
+        from scipy.interpolate import RegularGridInterpolator
+
+        return {
+            name: np.asarray(RegularGridInterpolator(self.axes, values)(points))
+            for name, values in self.values.items()
+        }
+
+
+def default_nodes(n_inputs: int) -> int:
+    """Nodes an input that keep a table to about 40,000 in all."""
+    return 2001 if n_inputs == 1 else max(2, round(40_401 ** (1 / n_inputs)))
+
+
+def build_table(
+    rulebase: RuleBase, evaluate: Callable[[Array], dict[str, Array]], nodes: int
+) -> InterpolationTable:
+    """Tabulate `evaluate` on `nodes` points an input and measure the interpolation error.
+
+    Parameters
+    ----------
+    rulebase : RuleBase
+        Gives the inputs' universes.
+    evaluate : callable
+        ``evaluate(points)``, points of shape (n, n_inputs), to a dict of arrays of shape (n,).
+    nodes : int
+        Nodes an input.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two nodes, or the table would hold more than 4,000,000.
+    """
+    n_inputs = len(rulebase.inputs)
+    if nodes < 2 or float(nodes) ** n_inputs > MAX_NODES:
+        raise ValueError(
+            f"table: {nodes} nodes on each of {n_inputs} inputs; at least 2 nodes an input and "
+            f"at most {MAX_NODES} in all are allowed"
+        )
+    axes = tuple(np.linspace(v.universe.low, v.universe.high, nodes) for v in rulebase.inputs)
+    flat = evaluate(_net(axes))
+    shape = (nodes,) * n_inputs
+    table = InterpolationTable(axes, {name: v.reshape(shape) for name, v in flat.items()}, {})
+    worst = dict.fromkeys(flat, 0.0)
+    for probes in _probes(axes):
+        truth, answer = evaluate(probes), table(probes)
+        for name in worst:
+            gap = np.abs(answer[name] - truth[name])
+            # A number on one side only: the cell touches a place where no rule fires.
+            gap[np.isnan(answer[name]) != np.isnan(truth[name])] = np.inf
+            # Rounding of two different sums of products, even where the table is exact.
+            rounding = 1e-14 * np.abs(truth[name])
+            worst[name] = max(worst[name], _largest(gap), _largest(rounding))
+    return InterpolationTable(axes, table.values, {name: 2 * w for name, w in worst.items()})
+
+
+def _net(axes: tuple[Array, ...]) -> Array:
+    return np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=-1)
+
+
+def _probes(axes: tuple[Array, ...]) -> list[Array]:
+    """Nets of points inside the cells, a few thousand points to a net at the most."""
+    inside = (np.arange(PROBES_PER_CELL) + 0.5) / PROBES_PER_CELL
+    fine = []
+    for axis in axes:
+        cells = axis[:-1]
+        limit = max(2, int(1_000_000 ** (1 / len(axes))))
+        dense = (cells[:, None] + inside * (axis[1] - axis[0])).ravel()
+        if len(dense) > limit:
+            dense = dense[np.unique(np.linspace(0, len(dense) - 1, limit).astype(int))]
+        fine.append(dense)
+    first, rest = fine[0], fine[1:]
+    rows = max(1, 65_536 // max(1, int(np.prod([len(r) for r in rest], dtype=float))))
+    return [_net((first[i : i + rows], *rest)) for i in range(0, len(first), rows)]
+
+
+def _largest(values: Array) -> float:
+    """Largest of the values that are not NaN; zero where all are."""
+    return float(np.fmax.reduce(values, initial=0.0))

@@ -1,0 +1,206 @@
+"""Linguistic variables: a discrete universe of discourse and the fuzzy sets on it."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections import Counter
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.membership import FuzzySet
+
+__all__ = ["GRIDS", "Universe", "Variable"]
+
+GRIDS = ("ends", "midpoints")
+MAX_POINTS = 100_001
+
+
+@dataclass(frozen=True)
+class Universe:
+    """Discrete universe of discourse: `points` equally spaced values from `low` to `high`.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends, ``low < high``, in the units of the variable.
+    points : int
+        Number of grid points, from 2 to 100,001.
+    grid : {"ends", "midpoints"}
+        Whether the grid includes both ends (as in MATLAB and simpful), or holds the midpoints of
+        `points` equal cells (as in fuzzylite). Published results depend on it.
+
+    Raises
+    ------
+    RuleBaseError
+        If a value is out of range.
+    """
+
+    low: float
+    high: float
+    points: int
+    grid: str = "ends"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "low", float(self.low))
+        object.__setattr__(self, "high", float(self.high))
+        finite = math.isfinite(self.low) and math.isfinite(self.high)
+        if not (finite and self.low < self.high and max(abs(self.low), abs(self.high)) <= 1e100):
+            raise RuleBaseError(
+                f"universe: needs finite low < high, got low={self.low}, high={self.high}"
+            )
+        whole = isinstance(self.points, numbers.Real) and float(self.points).is_integer()
+        if not whole or not 2 <= self.points <= MAX_POINTS:
+            raise RuleBaseError(
+                f"universe: points must be a whole number from 2 to {MAX_POINTS}, got {self.points}"
+            )
+        object.__setattr__(self, "points", int(self.points))
+        if self.grid not in GRIDS:
+            raise RuleBaseError(f"universe: unknown grid {self.grid!r}; one of {', '.join(GRIDS)}")
+        if not (self.low + self.step > self.low and self.high - self.step < self.high):
+            raise RuleBaseError(
+                f"universe: {self.points} points from low={self.low} to high={self.high} "
+                "are finer than floating point"
+            )
+
+    @property
+    def step(self) -> float:
+        """Distance between neighbouring grid points."""
+        intervals = self.points - 1 if self.grid == "ends" else self.points
+        return (self.high - self.low) / intervals
+
+    @property
+    def first(self) -> float:
+        """First grid point."""
+        return self.low if self.grid == "ends" else self.low + self.step / 2
+
+    @cached_property
+    def values(self) -> NDArray[np.float64]:
+        """The grid points, shape (points,), read-only."""
+        last = self.high if self.grid == "ends" else self.high - self.step / 2
+        grid = np.linspace(self.first, last, self.points)
+        grid.flags.writeable = False
+        return grid
+
+    def nearest(self, x: NDArray[np.float64]) -> NDArray[np.intp]:
+        """Index of the grid point nearest to each `x`; a tie goes to the upper one."""
+        index = np.floor((x - self.first) / self.step + 0.5)
+        return np.clip(index, 0, self.points - 1).astype(np.intp)
+
+    def clip(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """`x` moved to the nearest end of the universe where it lies outside."""
+        return np.clip(x, self.low, self.high)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """Linguistic variable: an input or output of a fuzzy system.
+
+    Parameters
+    ----------
+    name : str
+        Name used in rules and calls.
+    universe : Universe
+        Discrete universe of discourse.
+    sets : tuple of FuzzySet
+        At least one, with distinct names.
+    default : float or None
+        For an output, the value where no rule fires; None gives NaN and a warning.
+    label, unit : str
+        For axes and tables.
+
+    Raises
+    ------
+    RuleBaseError
+        If there is no set, or two sets share a name.
+    """
+
+    name: str
+    universe: Universe
+    sets: tuple[FuzzySet, ...]
+    default: float | None = None
+    label: str = ""
+    unit: str = ""
+    _index: dict[str, int] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sets", tuple(self.sets))
+        names = [s.name for s in self.sets]
+        if not names:
+            raise RuleBaseError(f"variable {self.name!r} needs at least one set")
+        if len(set(names)) < len(names):
+            doubled = min(n for n, k in Counter(names).items() if k > 1)
+            raise RuleBaseError(f"variable {self.name!r}: two sets of one name: {doubled!r}")
+        object.__setattr__(self, "_index", {n: i for i, n in enumerate(names)})
+
+    @property
+    def set_names(self) -> tuple[str, ...]:
+        """Names of the sets, in order."""
+        return tuple(self._index)
+
+    @property
+    def axis_label(self) -> str:
+        """Label with unit, for an axis."""
+        text = self.label or self.name
+        return f"{text} ({self.unit})" if self.unit and self.unit != "1" else text
+
+    def index(self, set_name: str) -> int:
+        """Position of a set by name.
+
+        Raises
+        ------
+        RuleBaseError
+            If there is no such set; names the allowed ones.
+        """
+        if set_name not in self._index:
+            raise RuleBaseError(
+                f"{self.name} has no set {set_name!r}; one of {', '.join(self._index)}"
+            )
+        return self._index[set_name]
+
+    def uncovered(self, set_names: Collection[str] | None = None) -> Iterator[tuple[float, float]]:
+        """Stretches of the universe, as (low, high), where every membership is zero.
+
+        Parameters
+        ----------
+        set_names : collection of str, optional
+            The sets that count; all unless given.
+
+        Yields
+        ------
+        low, high : float
+            In ascending order; equal where only one point is bare.
+        """
+        end, end_covered = self.universe.low, False
+        supports = [s.support() for s in self.sets if set_names is None or s.name in set_names]
+        for low, high, with_low, with_high in sorted(supports, key=lambda s: (s[0], not s[2])):
+            if low > self.universe.high:
+                break
+            if low > end or (low == end and not end_covered and not with_low):
+                yield end, low
+            if high > end or (high == end and with_high):
+                end, end_covered = high, with_high
+        if end < self.universe.high or (end == self.universe.high and not end_covered):
+            yield end, self.universe.high
+
+    def memberships(self, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Grades of every set, shape ``(n_sets, *x.shape)``; on the universe's grid without `x`."""
+        points = self.universe.values if x is None else x
+        grades = np.stack([s.membership(points) for s in self.sets])
+        if x is None:
+            for row, fuzzy_set in enumerate(self.sets):
+                if fuzzy_set.shape == "singleton":
+                    # A spike between two grid points belongs to the nearer one (Eq. 3.2).
+                    grades[row] = 0.0
+                    grades[row, self.universe.nearest(np.asarray(fuzzy_set.parameters[0]))] = 1.0
+        return grades
+
+    def centers(self) -> NDArray[np.float64]:
+        """Centres of the sets, shape (n_sets,)."""
+        low, high = self.universe.low, self.universe.high
+        return np.array([s.center(low, high) for s in self.sets])
