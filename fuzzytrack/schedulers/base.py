@@ -1,0 +1,75 @@
+"""What a gain scheduler is."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+from fuzzytrack.plugins import Registry
+
+__all__ = ["GainScheduler", "Kernel", "Memory", "schedulers"]
+
+Memory = tuple[float, ...]
+
+#: ``kernel(innovation, change, dt, sigma, memory) -> (alpha, beta, gamma, phi, memory)``; see
+#: `GainScheduler.kernel`. Its first, second and fourth arguments are floats, or tuples of floats
+#: for a coupled scheduler.
+Kernel = Callable[[Any, Any, float, Any, Memory], tuple[float, float, float, float, Memory]]
+
+
+class GainScheduler(ABC):
+    """Chooses the gains of a tracker, update by update.
+
+    A scheduler is immutable and shared between tracks; what it remembers of a track lives in the
+    track's state, as a tuple of floats that its kernel takes and returns. It must pickle.
+
+    Attributes
+    ----------
+    source : str
+        Paper, or other origin.
+    coupled : bool
+        Whether the kernel sees all axes of a track at once and gives them one set of gains.
+    needs_sigma : bool
+        Whether the kernel reads the standard deviation of the plot.
+    """
+
+    source: ClassVar[str] = ""
+    coupled: bool = False
+    needs_sigma: bool = False
+
+    @abstractmethod
+    def kernel(self, n_axes: int) -> Kernel:
+        """The scheduler's arithmetic, as one scalar function.
+
+        The function is called with
+
+        - ``innovation``: plot minus prediction (m);
+        - ``change``: plot minus the previous plot that was seen (m);
+        - ``dt``: time step (s), positive;
+        - ``sigma``: standard deviation of the plot (m); NaN where none was given;
+        - ``memory``: tuple of floats, first the one of `initial_memory`;
+
+        and returns ``(alpha, beta, gamma, phi, memory)``: the gains, the retention of acceleration
+        (1 in every classical filter), and the new memory, of the same length. Gamma is the one
+        whose acceleration gain is γ/(2T²). Of a coupled scheduler the first, second and fourth
+        arguments are tuples with one float an axis.
+
+        Where a plot is missing, or a two-point start still waits for the second one, the function
+        is called with zeros (and a sigma of 1) and its answer is dropped; so NaN never arrives as
+        an innovation. It runs in plain Python and is compiled by Numba, so it may use numbers,
+        tuples, `math`, other such functions, and constants of the enclosing scope; not the
+        scheduler itself. It must guard its own divisions.
+
+        Parameters
+        ----------
+        n_axes : int
+            Axes that the kernel sees at once: 1 unless the scheduler is coupled.
+        """
+
+    def initial_memory(self, n_axes: int) -> Memory:
+        """Memory of a new track; empty unless overridden."""
+        return ()
+
+
+schedulers: Registry[type[GainScheduler]] = Registry("scheduler", "fuzzytrack.schedulers")

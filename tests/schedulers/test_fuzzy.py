@@ -1,0 +1,163 @@
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.fuzzy.variable import Universe, Variable
+from fuzzytrack.testing import check_scheduler
+
+
+@pytest.fixture(scope="module")
+def rules():
+    return ft.load_rulebase("stiffness-damping")
+
+
+def changed(rules, old, new):
+    text = dumps_rulebase(rules)
+    assert old in text
+    return ft.loads_rulebase(text.replace(old, new), "my.yaml")
+
+
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        ("stiffness-damping", "exact"),
+        ("stiffness-damping", "table"),
+        ("stiffness-damping-cog", "relation"),
+        ("chan-style", "exact"),
+    ],
+)
+def test_schedulers_keep_the_contract(name, method):
+    check_scheduler(ft.FuzzyScheduler(ft.load_rulebase(name), method))
+
+
+def test_gains_come_from_the_rule_base_through_the_w_domain(rules):
+    kernel = ft.FuzzyScheduler(rules).kernel(1)
+    # E = 3/10, and with E′ = 0.5 the error rate is -0.2/0.5
+    alpha, beta, gamma, phi, memory = kernel(3.0, -10.0, 1.0, float("nan"), (0.5,))
+    inferred = ft.FuzzySystem(rules)(E=0.3, dE=-0.4)
+    expected = ft.alpha_beta_from_w(inferred["stiffness"], inferred["damping"])
+    assert (alpha, beta) == pytest.approx(expected, rel=1e-12)
+    assert (gamma, phi, memory) == (0.0, 1.0, (0.3,))
+
+
+def test_direct_gains_and_coupling():
+    scheduler = ft.FuzzyScheduler(ft.load_rulebase("chan-style"))
+    assert scheduler.coupled
+    assert not scheduler.needs_sigma
+    alpha, beta, *_ = scheduler.kernel(2)((0.0, 0.0), (1.0, 1.0), 1.0, (1.0, 1.0), (0.0, 0.0))
+    assert (alpha, beta) == pytest.approx((0.3, 0.1))
+    alpha, beta, *_ = scheduler.kernel(2)((9.0, -9.0), (1.0, 1.0), 1.0, (1.0, 1.0), (0.0, 0.0))
+    assert (alpha, beta) == pytest.approx((0.9, 0.6))
+
+
+def with_gamma(rules, high=0.01):
+    """The rule base with outputs alpha, beta and gamma in place of stiffness and damping."""
+    text = dumps_rulebase(rules)
+    for old, new in (
+        ("stiffness", "beta"),
+        ("damping", "alpha"),
+        ("gains: w-domain", "gains: direct"),
+    ):
+        text = text.replace(old, new)
+    base = ft.loads_rulebase(text.replace("w-domain", "direct"))
+    alpha, beta = base.output("alpha"), base.output("beta")
+    gamma = Variable(
+        "gamma",
+        Universe(0.0, high, 11),
+        tuple(replace(s, shape="trimf", parameters=(0, high / 2, high)) for s in beta.sets[:1]),
+    )
+    first = gamma.sets[0].name
+    rules = tuple(
+        replace(r, consequents=(*r.consequents, ft.fuzzy.rulebase.Consequent("gamma", first)))
+        for r in base.rules
+    )
+    return replace(base, outputs=(gamma, alpha, beta), rules=rules, layout=None)
+
+
+def test_direct_gains_with_gamma_in_any_order(rules):
+    scheduler = ft.FuzzyScheduler(with_gamma(rules))
+    alpha, beta, gamma, *_ = scheduler.kernel(1)(0.0, 1.0, 1.0, 1.0, (0.0,))
+    assert (alpha, beta, gamma) == pytest.approx((0.89, 0.35, 0.005))
+    check_scheduler(scheduler)
+
+
+def test_unstable_reach_is_refused(rules):
+    with pytest.raises(ft.RuleBaseError, match="reach unstable gains"):
+        ft.FuzzyScheduler(with_gamma(rules, high=3.0))
+    stiffness = rules.output("stiffness")
+    negative = replace(stiffness, universe=Universe(-0.1, 0.35, 41))
+    with pytest.raises(ft.RuleBaseError, match="stiffness must not be negative"):
+        ft.FuzzyScheduler(replace(rules, outputs=(negative, rules.output("damping"))))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "normalization: chan",
+            "normalization: chann",
+            "unknown normalization 'chann'; one of",
+        ),
+        ("gains: w-domain", "gains: direct", "gains 'direct' need outputs alpha, beta or alpha"),
+        ("gains: w-domain", "gains: w", "unknown gains 'w'; one of w-domain, direct"),
+    ],
+)
+def test_wrong_settings_are_shown_where_they_stand(rules, old, new, message):
+    wrong = changed(rules, old, new)
+    with pytest.raises(ft.RuleBaseError, match=message) as caught:
+        ft.FuzzyScheduler(wrong)
+    assert caught.value.location.file == "my.yaml"
+    assert caught.value.location.line > 40
+    assert str(caught.value).startswith(f"my.yaml:{caught.value.location.line}:")
+
+
+def test_a_rule_base_without_settings_cannot_schedule():
+    with pytest.raises(ft.RuleBaseError, match="no scheduler setting 'normalization'"):
+        ft.FuzzyScheduler(ft.load_rulebase("tipper"))
+
+
+def test_more_inputs_than_signals(rules):
+    third = replace(rules.inputs[0], name="third")
+    with pytest.raises(ft.RuleBaseError, match=r"gives 2 signals .*has 3 inputs"):
+        ft.FuzzyScheduler(replace(rules, inputs=(*rules.inputs, third), layout=None))
+
+
+def test_silence_is_refused_unless_there_is_a_default(rules):
+    fewer = replace(rules, rules=rules.rules[1:], layout=None)
+    with pytest.raises(ft.RuleBaseError, match="no rule about stiffness fires at E=-1"):
+        ft.FuzzyScheduler(fewer)
+    outputs = tuple(replace(v, default=v.universe.low) for v in fewer.outputs)
+    scheduler = ft.FuzzyScheduler(replace(fewer, outputs=outputs))
+    # Large negative error and error rate: where the first rule is missing
+    alpha, beta, *_ = scheduler.kernel(1)(-1.0, 1.0, 1.0, 1.0, (1.0,))
+    assert (alpha, beta) == pytest.approx(ft.alpha_beta_from_w(0.25, 0.54))
+
+
+def test_maxima_need_a_table(rules):
+    mom = changed(rules, "defuzzification: weighted-centers", "defuzzification: mom")
+    with pytest.raises(ValueError, match="for mom use method='relation' or 'table'"):
+        ft.FuzzyScheduler(mom)
+    ft.FuzzyScheduler(mom, "relation")
+
+
+def test_schedulers_of_equal_rules_are_equal(rules):
+    one, other = ft.FuzzyScheduler(rules), ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping"))
+    assert one == other
+    assert hash(one) == hash(other)
+    assert pickle.loads(pickle.dumps(one)) == one
+    assert one != ft.FuzzyScheduler(rules, "table")
+
+
+def test_scaled_innovations_need_sigma(rules):
+    scaled = ft.FuzzyScheduler(changed(rules, "normalization: chan", "normalization: scale"))
+    assert scaled.needs_sigma
+    tracker = ft.AlphaBetaTracker(scaled)
+    with pytest.raises(ValueError, match="sigma: FuzzyScheduler needs the standard deviation"):
+        tracker.run([0, 1, 2], [0, 1, 2])
+    rough = tracker.run(np.arange(4), [0, 10, 19, 31], sigma=1e6)
+    # Innovations far below the noise are zero error: the largest gains of the table
+    assert rough.gains.alpha[2:] == pytest.approx(0.71383558, abs=1e-4)
