@@ -1,0 +1,290 @@
+"""The α-β(-γ) tracker."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.trackers.base import trackers
+from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.runner import Runner, runner
+from fuzzytrack.trackers.state import Gains, TrackState
+
+__all__ = ["STARTS", "AlphaBetaTracker"]
+
+Array = NDArray[np.float64]
+
+STARTS = ("two-point", "one-point")
+
+
+@trackers.register("alpha-beta")
+@dataclass(frozen=True)
+class AlphaBetaTracker:
+    """An α-β(-γ) tracker whose gains a scheduler chooses.
+
+    Parameters
+    ----------
+    scheduler : GainScheduler
+        Chooses the gains. An ordinary one works on each axis by itself; a coupled one sees all
+        axes of a track and gives them one set of gains.
+    start : {"two-point", "one-point"}
+        ``two-point`` takes position from the second plot and velocity from the first two (the
+        papers' way: predictions begin with the third plot). ``one-point`` takes position from the
+        first plot with velocity 0, and asks the scheduler from the second on.
+
+    Raises
+    ------
+    TypeError
+        If `scheduler` is not a GainScheduler.
+    ValueError
+        If `start` is unknown.
+
+    Notes
+    -----
+    Llinas et al. (1998), Eqs. 2.1 to 2.6 and 2.35 to 2.39. A plot that is NaN was missed: the track
+    coasts on its prediction. The velocity correction is (β/T)·e with the T of the step, also after
+    missed plots, while the change of observation that a scheduler sees spans the whole gap. Times
+    may be irregular. For a coupled scheduler a plot with any coordinate missing is missed.
+
+    Examples
+    --------
+    >>> from fuzzytrack import AlphaBetaTracker, FixedGains
+    >>> result = AlphaBetaTracker(FixedGains(0.5, 0.2)).run([0, 1, 2, 3], [0, 10, 19, 31])
+    >>> result.predicted
+    array([ nan,  nan, 20. , 29.3])
+    """
+
+    source: ClassVar[str] = "Llinas et al. (1998), Eqs. 2.1-2.6 and 2.35-2.39"
+
+    scheduler: GainScheduler
+    start_mode: str = "two-point"
+
+    def __init__(self, scheduler: GainScheduler, start: str = "two-point") -> None:
+        if not isinstance(scheduler, GainScheduler):
+            raise TypeError(f"scheduler must be a GainScheduler, got {type(scheduler).__name__}")
+        if start not in STARTS:
+            raise ValueError(f"start: unknown {start!r}; one of {', '.join(STARTS)}")
+        object.__setattr__(self, "scheduler", scheduler)
+        object.__setattr__(self, "start_mode", start)
+
+    def run(
+        self,
+        t: ArrayLike,
+        z: ArrayLike,
+        sigma: ArrayLike | None = None,
+        *,
+        state: TrackState | None = None,
+    ) -> TrackResult:
+        """Track plots over time.
+
+        Parameters
+        ----------
+        t : array_like, shape (n_steps,) or (n_steps, ...batch)
+            Times (s), strictly increasing; for a batch, common or each track's own.
+        z : array_like, shape (n_steps,), (n_steps, n_axes) or (n_steps, ...batch, n_axes)
+            Plots (m); NaN where missed.
+        sigma : array_like, optional
+            Standard deviation of the plots (m), broadcast against `z`; needed by some schedulers.
+        state : TrackState, optional
+            State from which to go on; a new track unless given.
+
+        Returns
+        -------
+        TrackResult
+
+        Raises
+        ------
+        DataError
+            If a plot is infinite, or times are not finite and increasing; says where.
+        ValueError
+            If shapes do not fit, or the scheduler needs `sigma`.
+        """
+        plots = np.asarray(z, dtype=np.float64)
+        times = np.asarray(t, dtype=np.float64)
+        layout = _Layout.of(plots, self.scheduler.coupled)
+        _check_plots(plots)
+        dts = _time_steps(times, plots.shape, state)
+        if state is not None and state.shape != plots.shape[1:]:
+            raise ValueError(
+                f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape "
+                f"{state.shape}"
+            )
+        core = runner(self.scheduler, layout.lane_axes, self.start_mode == "two-point")
+        states = core.fresh(layout.lanes) if state is None else state.lanes
+        new_states, raw = core(
+            states,
+            layout.to_lanes(plots),
+            layout.times_to_lanes(dts),
+            layout.to_lanes(self._sigma(sigma, plots)),
+        )
+        outputs = {name: layout.from_lanes(values) for name, values in raw.items()}
+        gains = Gains(*(outputs.pop(name) for name in ("alpha", "beta", "gamma")))
+        last = _last_state(core, layout, new_states, times, outputs, gains) if len(plots) else state
+        return TrackResult(time=times, measured=plots, gains=gains, state=last, **outputs)
+
+    def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
+        """State of a new track, or batch of tracks, after a first plot.
+
+        Parameters
+        ----------
+        z : array_like, shape (), (n_axes,) or (...batch, n_axes)
+            Plot (m).
+        t : array_like, shape () or (...batch)
+            Its time (s).
+        sigma : array_like, optional
+            Its standard deviation (m).
+        """
+        return self._one_step(None, z, t, sigma)
+
+    def step(
+        self, state: TrackState, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None
+    ) -> TrackState:
+        """State after one more plot; equals `run` to the last bit.
+
+        Parameters
+        ----------
+        state : TrackState
+            From `start`, `step` or a result.
+        z, t, sigma : array_like
+            As for `start`; the time later than that of the state.
+
+        Raises
+        ------
+        DataError, ValueError
+            As for `run`.
+        """
+        return self._one_step(state, z, t, sigma)
+
+    def _one_step(
+        self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
+    ) -> TrackState:
+        plot, time = np.asarray(z, dtype=np.float64), np.asarray(t, dtype=np.float64)
+        deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
+        result = self.run(time[None], plot[None], deviation, state=state)
+        assert result.state is not None
+        return result.state
+
+    def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
+        if sigma is None:
+            if self.scheduler.needs_sigma:
+                raise ValueError(
+                    f"sigma: {type(self.scheduler).__name__} needs the standard deviation of the "
+                    "plots (m)"
+                )
+            return np.full((1,) * plots.ndim, np.nan)
+        values = np.asarray(sigma, dtype=np.float64)
+        try:
+            full = np.broadcast_to(values, plots.shape)
+        except ValueError:
+            raise ValueError(
+                f"sigma: shape {values.shape} does not broadcast with the plots' {plots.shape}"
+            ) from None
+        bad = ~(np.isfinite(full) & (full > 0)) & ~np.isnan(plots)
+        if bad.any():
+            place = tuple(int(k) for k in np.argwhere(bad)[0])
+            raise ValueError(
+                f"sigma must be positive and finite where there is a plot; at index {place} it is "
+                f"{full[place]:g}"
+            )
+        return values.reshape((1,) * (plots.ndim - values.ndim) + values.shape)
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """How plots of a shape are laid out as lanes; see `fuzzytrack.trackers.runner`."""
+
+    shape: tuple[int, ...]
+    n_axes: int
+    coupled: bool
+
+    @classmethod
+    def of(cls, plots: Array, coupled: bool) -> _Layout:
+        if plots.ndim == 0:
+            raise ValueError("z: needs a time axis; got a single number")
+        n_axes = plots.shape[-1] if plots.ndim > 1 else 1
+        if n_axes == 0:
+            raise ValueError(f"z: needs at least one axis of space; got shape {plots.shape}")
+        return cls(plots.shape, n_axes, coupled)
+
+    @property
+    def lane_axes(self) -> int:
+        return self.n_axes if self.coupled else 1
+
+    @property
+    def lanes(self) -> int:
+        return int(np.prod(self.shape[1:], dtype=int)) // self.lane_axes
+
+    def to_lanes(self, values: Array) -> Array:
+        """Array that broadcasts with the plots, to one that does with (n_steps, lanes, axes)."""
+        if values.size == 1:
+            return values.reshape(1, 1, 1)
+        full = values if values.shape == self.shape else np.broadcast_to(values, self.shape)
+        return full.reshape(self.shape[0], self.lanes, self.lane_axes)
+
+    def times_to_lanes(self, dts: Array) -> Array:
+        if dts.ndim == 1:
+            return dts[:, None]
+        flat = dts.reshape(len(dts), int(np.prod(dts.shape[1:], dtype=int)))
+        return np.repeat(flat, self.n_axes // self.lane_axes, axis=1)
+
+    def from_lanes(self, values: Array) -> Array:
+        """Output of the runner in the shape of the plots; shared gains are repeated views."""
+        if values.ndim == 3 or not self.coupled or len(self.shape) == 1:
+            return values.reshape(self.shape)
+        return np.broadcast_to(values.reshape(*self.shape[:-1], 1), self.shape)
+
+
+def _check_plots(plots: Array) -> None:
+    bad = np.isinf(plots)
+    if bad.any():
+        place = tuple(int(k) for k in np.argwhere(bad)[0])
+        raise DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
+
+
+def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) -> Array:
+    """T of every step, shape of the times; 0 for the first step of a new track."""
+    if times.shape not in (shape[:1], shape[:-1]):
+        own = f" or {shape[:-1]}" if len(shape) > 2 else ""
+        raise ValueError(
+            f"t: shape {times.shape} does not fit plots of shape {shape}; {shape[:1]}{own} does"
+        )
+    if not np.isfinite(times).all():
+        place = int(np.argwhere(~np.isfinite(times))[0][0])
+        raise DataError(f"t: time at index {place} is not finite")
+    before = times[:1] if state is None else np.broadcast_to(state.time, times.shape[1:])[None]
+    dts = np.diff(np.concatenate([before, times]), axis=0)
+    bad = dts <= 0
+    if state is None:
+        bad[:1] = False
+    if bad.any():
+        place = int(np.argwhere(bad)[0][0])
+        raise DataError(
+            f"t: times must increase; the one at index {place} ({times[place].min():g} s) is not "
+            "later than the one before"
+        )
+    return dts
+
+
+def _last_state(
+    core: Runner,
+    layout: _Layout,
+    states: Array,
+    times: Array,
+    outputs: dict[str, Array],
+    gains: Gains,
+) -> TrackState:
+    return TrackState(
+        time=times[-1].copy(),
+        position=outputs["filtered"][-1].copy(),
+        velocity=outputs["velocity"][-1].copy(),
+        acceleration=outputs["acceleration"][-1].copy(),
+        predicted=outputs["predicted"][-1].copy(),
+        innovation=outputs["innovation"][-1].copy(),
+        gains=Gains(gains.alpha[-1].copy(), gains.beta[-1].copy(), gains.gamma[-1].copy()),
+        lanes=states,
+    )

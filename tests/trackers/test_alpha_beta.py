@@ -1,0 +1,299 @@
+import pickle
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as npst
+from scipy.signal import lfilter
+
+import fuzzytrack as ft
+from fuzzytrack.schedulers import GainScheduler
+from fuzzytrack.testing import check_tracker
+
+FIXED = ft.FixedGains(0.5377, 0.2018)
+
+
+def test_golden_run_of_the_exact_engine():
+    plots = [0, 10, 19, 31, 44, 50, 62, 71, 95, 100, 103, 118]
+    expected = [
+        20, 29.009578260, 40.661585754, 54.016157485, 61.738041977,
+        72.276899371, 81.378782053, 102.932857757, 113.281026573, 116.874107683,
+    ]  # fmt: skip
+    tracker = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
+    result = tracker.run(np.arange(12), plots)
+    np.testing.assert_allclose(result.predicted[2:], expected, rtol=0, atol=1e-8)
+    assert np.isnan(result.predicted[:2]).all()
+
+
+def test_golden_run_of_the_relational_engine():
+    plots = [0, 10, 19, 31, 44, 50, 62, 71, 95, 100, 103, 118]
+    expected = [
+        20, 29.043447923, 40.603402826, 53.939333283, 61.776874840,
+        72.265308097, 81.416174286, 102.797833816, 113.335412724, 117.106844506,
+    ]  # fmt: skip
+    rules = ft.load_rulebase("stiffness-damping-cog")
+    tracker = ft.AlphaBetaTracker(ft.FuzzyScheduler(rules, method="relation"))
+    result = tracker.run(np.arange(12), plots)
+    np.testing.assert_allclose(result.predicted[2:], expected, rtol=0, atol=1e-8)
+
+
+def literal_tracker(times, plots, alpha, beta, gamma=0.0):
+    """Eqs. 2.1-2.6 and 2.35-2.39 as they stand, for one axis without misses; predictions."""
+    dt = times[1] - times[0]
+    x, v, a = plots[1], (plots[1] - plots[0]) / dt, 0.0
+    predicted = [np.nan, np.nan]
+    for k in range(2, len(plots)):
+        dt = times[k] - times[k - 1]
+        forecast = x + dt * v + dt**2 / 2 * a
+        error = plots[k] - forecast
+        x, v, a = (
+            forecast + alpha * error,
+            v + dt * a + beta / dt * error,
+            a + gamma / (2 * dt**2) * error,
+        )
+        predicted.append(forecast)
+    return np.array(predicted)
+
+
+@given(
+    st.lists(st.tuples(st.floats(0.1, 5), st.floats(-1e3, 1e3)), min_size=3, max_size=30),
+    st.sampled_from([(0.5, 0.2, 0.0), (0.9, 1.1, 0.4), (1.2, 0.7, 0.0)]),
+)
+def test_it_is_the_recursion_of_the_report(track, gains):
+    steps, plots = np.array(track).T
+    times = np.cumsum(steps)
+    result = ft.AlphaBetaTracker(ft.FixedGains(*gains)).run(times, plots)
+    expected = literal_tracker(times, plots, *gains)
+    np.testing.assert_allclose(result.predicted, expected, rtol=1e-9, atol=1e-6)
+
+
+def test_the_prediction_has_the_transfer_function_of_the_report():
+    """Eq. 2.7: G(z) = ((α+β)z - α)/(z² + (α+β-2)z + 1-α), from plot to next prediction."""
+    alpha, beta = 0.5, 0.7
+    plots = np.zeros(40)
+    plots[3] = 1.0  # an impulse after the start
+    result = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta)).run(np.arange(40), plots)
+    impulse = np.zeros(37)
+    impulse[0] = 1.0
+    response = lfilter([0, alpha + beta, -alpha], [1, alpha + beta - 2, 1 - alpha], impulse)
+    np.testing.assert_allclose(result.predicted[3:], response, atol=1e-12)
+
+
+def test_a_straight_track_is_followed_without_error():
+    times = np.cumsum([0.0, 1.0, 0.5, 2.0, 1.5, 1.0])
+    plots = np.stack([3.0 + 2.0 * times, -1.0 - 0.5 * times], axis=-1)
+    result = ft.AlphaBetaTracker(FIXED).run(times, plots)
+    np.testing.assert_allclose(result.predicted[2:], plots[2:], atol=1e-12)
+    np.testing.assert_allclose(result.velocity[1:], [[2.0, -0.5]] * 5, atol=1e-12)
+
+
+def test_one_point_start_with_unit_gains_is_the_two_point_start():
+    @dataclass(frozen=True)
+    class UnitAtFirst(GainScheduler):
+        def initial_memory(self, n_axes):
+            return (0.0,)
+
+        def kernel(self, n_axes):
+            def unit_at_first(innovation, change, dt, sigma, memory):
+                first = memory[0] == 0.0
+                return (1.0 if first else 0.5), (1.0 if first else 0.2), 0.0, 1.0, (1.0,)
+
+            return unit_at_first
+
+    plots = [0.0, 10.0, 19.0, 31.0, 44.0]
+    one = ft.AlphaBetaTracker(UnitAtFirst(), start="one-point").run(np.arange(5), plots)
+    two = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)).run(np.arange(5), plots)
+    np.testing.assert_array_equal(one.predicted[2:], two.predicted[2:])
+    assert one.predicted[1] == 0.0
+    assert np.isnan(one.predicted[0])
+
+
+def test_missed_plots_are_coasted_and_beta_keeps_its_own_time_step():
+    plots = np.array([0.0, 10.0, 20.0, np.nan, np.nan, 56.0, 60.0])
+    result = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)).run(np.arange(7), plots)
+    np.testing.assert_allclose(result.predicted[2:6], [20, 30, 40, 50])
+    np.testing.assert_array_equal(result.coasted, [0, 0, 0, 1, 1, 0, 0])
+    np.testing.assert_allclose(result.filtered[3:6], [30, 40, 53])
+    assert result.velocity[5] == pytest.approx(10 + 0.2 * 6)
+    assert np.isnan(result.gains.alpha[3])
+    assert np.isnan(result.innovation[3])
+
+
+def test_the_start_waits_for_plots():
+    plots = [np.nan, 4.0, np.nan, np.nan, 10.0, 12.0]
+    result = ft.AlphaBetaTracker(FIXED).run([0, 1, 2, 4, 5, 6], plots)
+    np.testing.assert_array_equal(result.filtered[:5], [np.nan, 4, 4, 4, 10])
+    assert np.isnan(result.predicted[:5]).all()
+    # 6 m in the 4 s since the first plot
+    assert result.predicted[5] == pytest.approx(11.5)
+
+
+def test_the_change_of_observation_spans_the_gap():
+    @dataclass(frozen=True)
+    class Spy(GainScheduler):
+        seen: list = field(default_factory=list, compare=False)
+
+        def kernel(self, n_axes):
+            seen = self.seen
+
+            def spy(innovation, change, dt, sigma, memory):
+                seen.append((innovation, change, dt, sigma))
+                return 0.5, 0.2, 0.0, 1.0, memory
+
+            return spy
+
+    spy = Spy()
+    ft.AlphaBetaTracker(spy).run([0, 1, 3, 4], [0.0, 1.0, np.nan, 6.0], [1, 2, 3, 4])
+    assert spy.seen[-1] == (2.0, 5.0, 1.0, 4.0)
+    # Missed plots and the start are asked with harmless numbers, never with NaN.
+    assert spy.seen[:3] == [(0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 2.0, 1.0)]
+
+
+def test_retention_scales_the_acceleration():
+    @dataclass(frozen=True)
+    class Leaky(GainScheduler):
+        phi: float
+
+        def kernel(self, n_axes):
+            phi = self.phi
+
+            def leaky(innovation, change, dt, sigma, memory):
+                return 0.5, 0.4, 0.2, phi, memory
+
+            return leaky
+
+    plots = [0.0, 1.0, 4.0, 9.0]
+    full = ft.AlphaBetaTracker(Leaky(1.0)).run(range(4), plots)
+    half = ft.AlphaBetaTracker(Leaky(0.5)).run(range(4), plots)
+    assert full.acceleration[2] == pytest.approx(0.1 * full.innovation[2])
+    assert half.acceleration[2] == pytest.approx(0.5 * full.acceleration[2])
+    assert half.acceleration[3] == pytest.approx(
+        0.5 * (half.acceleration[2] + 0.1 * half.innovation[3])
+    )
+
+
+def test_a_coupled_scheduler_misses_a_plot_with_a_coordinate_missing():
+    scheduler = ft.FuzzyScheduler(ft.load_rulebase("chan-style"))
+    plots = np.array([[0, 0], [1, 1], [2, 2.5], [3, np.nan], [4, 4.0]])
+    result = ft.AlphaBetaTracker(scheduler).run(range(5), plots)
+    assert result.coasted[3].all()
+    assert result.gains.alpha.shape == plots.shape
+    np.testing.assert_array_equal(result.gains.alpha[4, 0], result.gains.alpha[4, 1])
+    alone = ft.AlphaBetaTracker(FIXED).run(range(5), plots)
+    np.testing.assert_array_equal(alone.coasted[3], [False, True])
+
+
+shapes = st.tuples(st.integers(1, 12), st.integers(1, 3), st.integers(1, 3))
+
+
+@settings(max_examples=30)
+@given(data=st.data())
+def test_streaming_resuming_and_chunks_agree_to_the_last_bit(data):
+    shape = data.draw(shapes)
+    elements = st.one_of(st.floats(-1e4, 1e4), st.just(np.nan))
+    plots = data.draw(npst.arrays(np.float64, shape, elements=elements))
+    steps = data.draw(npst.arrays(np.float64, shape[0], elements=st.floats(0.1, 10)))
+    times = np.cumsum(steps)
+    name = data.draw(st.sampled_from(["stiffness-damping", "chan-style"]))
+    tracker = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase(name)))
+    whole = tracker.run(times, plots)
+
+    state = tracker.start(plots[0], times[0])
+    for z, t in zip(plots[1:], times[1:], strict=True):
+        state = tracker.step(state, z, t)
+    np.testing.assert_array_equal(state.position, whole.filtered[-1])
+    np.testing.assert_array_equal(state.lanes, whole.state.lanes)
+
+    cut = data.draw(st.integers(0, shape[0]))
+    head = tracker.run(times[:cut], plots[:cut])
+    tail = tracker.run(times[cut:], plots[cut:], state=head.state)
+    for name in ("predicted", "filtered", "velocity", "innovation"):
+        joined = np.concatenate([getattr(head, name), getattr(tail, name)])
+        np.testing.assert_array_equal(joined, getattr(whole, name))
+
+
+def test_a_large_batch_runs_compiled_with_the_same_numbers():
+    random = np.random.default_rng(5)
+    plots = np.cumsum(random.normal(size=(30, 2500, 2)), axis=0) * 10
+    plots[random.random(plots.shape) < 0.1] = np.nan
+    times = np.cumsum(random.uniform(0.5, 2, (30, 2500)), axis=0)
+    tracker = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
+    batch = tracker.run(times, plots)  # 150,000 updates: above the limit
+    for track in (0, 247, 248, 2499):
+        alone = tracker.run(times[:, track], plots[:, track])
+        np.testing.assert_array_equal(alone.predicted, batch.predicted[:, track])
+        np.testing.assert_array_equal(alone.gains.beta, batch.gains.beta[:, track])
+
+
+def test_state_is_a_value():
+    tracker = ft.AlphaBetaTracker(FIXED)
+    state = tracker.start([0.0, 0.0], 0.0)
+    later = tracker.step(state, [1.0, 2.0], 1.0)
+    copy = pickle.loads(pickle.dumps(later))
+    one, other = tracker.step(later, [2.0, 4.5], 2.0), tracker.step(copy, [2.0, 4.5], 2.0)
+    np.testing.assert_array_equal(one.position, other.position)
+    np.testing.assert_array_equal(state.position, [0.0, 0.0])
+    assert later.shape == (2,)
+    assert later.time == 1.0
+
+
+def test_empty_and_single():
+    tracker = ft.AlphaBetaTracker(FIXED)
+    assert tracker.run([], np.empty((0, 2))).state is None
+    assert tracker.run([1.0], [[3.0, 4.0]]).filtered.tolist() == [[3.0, 4.0]]
+    assert tracker.run([1.0, 2.0], np.empty((2, 0, 2))).filtered.shape == (2, 0, 2)
+    state = tracker.run([1.0], [3.0]).state
+    assert tracker.run([], [], state=state).state is state
+
+
+@pytest.mark.parametrize(
+    ("times", "plots", "sigma", "error", "message"),
+    [
+        ([0, 1], [0, np.inf], None, ft.DataError, r"infinite plot at index \(1,\)"),
+        ([0, 0], [0, 1], None, ft.DataError, r"at index 1 \(0 s\) is not later"),
+        ([0, np.nan], [0, 1], None, ft.DataError, "time at index 1 is not finite"),
+        (
+            [0, 1, 2],
+            [0, 1],
+            None,
+            ValueError,
+            r"t: shape \(3,\) does not fit .* \(2,\)",
+        ),
+        ([0, 1], [0, 1], -1.0, ValueError, r"sigma must be positive .* index \(0,\) it is -1"),
+        ([0, 1], [0, 1], [1, 2, 3], ValueError, r"sigma: shape \(3,\) does not broadcast"),
+        (0.0, 1.0, None, ValueError, "needs a time axis"),
+        ([0, 1], np.empty((2, 0)), None, ValueError, "at least one axis of space"),
+    ],
+)
+def test_bad_input_is_named(times, plots, sigma, error, message):
+    with pytest.raises(error, match=message):
+        ft.AlphaBetaTracker(FIXED).run(times, plots, sigma)
+
+
+def test_a_state_goes_on_later_and_with_plots_of_its_shape():
+    tracker = ft.AlphaBetaTracker(FIXED)
+    state = tracker.start([0.0, 0.0], 5.0)
+    with pytest.raises(ft.DataError, match="not later than the one before"):
+        tracker.step(state, [0.0, 0.0], 5.0)
+    with pytest.raises(ValueError, match="do not go on from a state of shape"):
+        tracker.step(state, [0.0, 0.0, 0.0], 6.0)
+
+
+def test_sigma_may_be_missing_where_the_plot_is():
+    tracker = ft.AlphaBetaTracker(FIXED)
+    result = tracker.run(range(3), [0.0, np.nan, 1.0], [1.0, np.nan, 1.0])
+    assert np.isfinite(result.filtered).all()
+
+
+def test_arguments_of_the_tracker():
+    with pytest.raises(TypeError, match="scheduler must be a GainScheduler, got float"):
+        ft.AlphaBetaTracker(0.5)
+    with pytest.raises(ValueError, match="start: unknown 'three-point'; one of two-point"):
+        ft.AlphaBetaTracker(FIXED, start="three-point")
+
+
+def test_it_keeps_the_contract_with_either_start():
+    check_tracker(ft.AlphaBetaTracker(FIXED))
+    check_tracker(ft.AlphaBetaTracker(FIXED, "one-point"))
