@@ -1,0 +1,86 @@
+"""The example plug-in and fuzzytrack's own wheel, installed and run in a fresh environment."""
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+import venv
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory):
+    """Fresh environment with both packages; only their dependencies are shared with this one."""
+    home = tmp_path_factory.mktemp("environment")
+    venv.create(home, with_pip=True)
+    scripts = home / ("Scripts" if os.name == "nt" else "bin")
+    python = scripts / "python"
+    site = subprocess.run(
+        [python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.strip()
+    # The folder is put on the path, but its .pth files are not read: an editable fuzzytrack in it
+    # stays invisible, and the wheel is what is tested.
+    (Path(site) / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    packages = [str(ROOT), str(ROOT / "examples" / "plugin")]
+    done = subprocess.run(
+        [python, "-m", "pip", "install", "-qq", "--no-deps", *packages],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return scripts, Path(site)
+
+
+def run(*command, cwd):
+    environ = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "COV", "PYTEST"))}
+    return subprocess.run(
+        [str(part) for part in command], cwd=cwd, env=environ, capture_output=True, text=True
+    )
+
+
+def test_the_plugin_passes_its_own_tests(environment):
+    scripts, _ = environment
+    tests = ROOT / "examples" / "plugin" / "tests"
+    command = (scripts / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", tests)
+    done = run(*command, cwd=ROOT / "examples" / "plugin")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "3 passed" in done.stdout
+
+
+def test_the_command_line_lists_the_plugin(environment, tmp_path):
+    scripts, _ = environment
+    done = run(scripts / "fuzzytrack", "trackers", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rows = {row["name"]: row for row in json.loads(done.stdout)}
+    assert rows["two-speed"]["package"] == "fuzzytrack-two-speed"
+    assert rows["soft-sign"]["kind"] == "normalization"
+
+
+def test_the_wheel_carries_the_rule_bases(environment, tmp_path):
+    scripts, site = environment
+    code = (
+        "import fuzzytrack as ft; print(ft.__file__); "
+        "print(*(ft.load_rulebase(name).name for name in ft.shipped_rulebases()))"
+    )
+    done = run(scripts / "python", "-c", code, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    where, names = done.stdout.splitlines()
+    assert Path(where).is_relative_to(site)
+    assert "stiffness-damping" in names.split()
+
+
+def test_importing_fuzzytrack_stays_light(tmp_path):
+    heavy = ("matplotlib", "numba", "scipy", "skfuzzy", "typer", "rich")
+    code = f"import sys, fuzzytrack; print([m for m in {heavy!r} if m in sys.modules])"
+    done = run(sys.executable, "-c", code, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == "[]"
