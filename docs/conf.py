@@ -1,0 +1,60 @@
+"""Sphinx configuration; the build uses no network."""
+
+import os
+
+# The gallery draws, and must not wait for a display.
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import fuzzytrack
+
+project = "fuzzytrack"
+author = "The fuzzytrack developers"
+copyright = "2026, the fuzzytrack developers"
+version = release = fuzzytrack.__version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.viewcode",
+    "numpydoc",
+    "myst_parser",
+    "sphinx_gallery.gen_gallery",
+]
+templates_path = ["_templates"]
+exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.codeobj.json"]
+nitpicky = False
+
+# Pages are Markdown; the API pages are reStructuredText, as docstrings are.
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+myst_enable_extensions = ["deflist", "dollarmath"]
+myst_heading_anchors = 3
+
+autosummary_generate = True
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+# Members are listed by autodoc; numpydoc would list them twice.
+numpydoc_show_class_members = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"plot_",
+    "abort_on_example_error": True,
+    "copyfile_regex": r".*\.(csv|yaml)",
+    "download_all_examples": False,
+    "remove_config_comments": True,
+    "show_memory": False,
+    "min_reported_time": 5,
+}
+
+html_theme = "pydata_sphinx_theme"
+html_title = "fuzzytrack"
+html_theme_options = {
+    "logo": {"text": "fuzzytrack"},
+    "navigation_with_keys": False,
+    "show_toc_level": 2,
+    "header_links_before_dropdown": 6,
+}
+html_sidebars = {"index": []}
+html_copy_source = False

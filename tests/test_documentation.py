@@ -1,0 +1,68 @@
+"""The code on the pages runs, and the rule bases on them load."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.schedulers import normalizations, schedulers
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(page, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), flags=re.M | re.S)
+
+
+@pytest.fixture()
+def a_folder_with_plots(tmp_path, monkeypatch):
+    """The quick start's file of plots, in an empty working directory."""
+    (text,) = (b for b in blocks(ROOT / "docs" / "quickstart.md", "text") if b.startswith("t,x"))
+    (tmp_path / "plots.csv").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.usefixtures("a_folder_with_plots")
+def test_python_on_the_page_runs(page):
+    known = {plugin.name for registry in (schedulers, normalizations) for plugin in registry}
+    rules = ft.load_rulebase("stiffness-damping")
+    namespace = {
+        # What a reader has at hand from the pages before.
+        "ft": ft,
+        "np": np,
+        "rules": rules,
+        "system": ft.FuzzySystem(rules),
+        "tracker": ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)),
+        "t": np.arange(4.0),
+        "z": np.array([0.0, 10.0, 19.0, 31.0]),
+        "z0": 0.0,
+        "t0": 0.0,
+        "z1": 1.0,
+        "t1": 1.0,
+        "MyScheduler": lambda: ft.FixedGains(0.5, 0.2),
+        "__name__": "page",
+    }
+    try:
+        for block in blocks(page, "python"):
+            exec(compile(block, str(page), "exec"), namespace)
+    finally:
+        for registry in (schedulers, normalizations):
+            for name in set(registry.names()) - known:
+                registry.unregister(name)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_rule_bases_on_the_page_load(page):
+    for block in blocks(page, "yaml"):
+        if block.startswith("rulebase:"):
+            ft.loads_rulebase(block, page.name)
+
+
+def test_there_is_something_to_run():
+    assert sum(len(blocks(page, "python")) for page in PAGES) >= 8
+    assert any(b.startswith("rulebase:") for page in PAGES for b in blocks(page, "yaml"))
