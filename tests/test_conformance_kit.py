@@ -144,7 +144,7 @@ def zero_gains(result, t, z):
 
 
 def drift(state):
-    return replace(state, position=state.position + 1e-9)
+    return replace(state, lanes=state.lanes + 1e-9)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,8 +13,8 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.result import TrackResult
-from fuzzytrack.trackers.runner import Runner, runner
-from fuzzytrack.trackers.state import Gains, TrackState
+from fuzzytrack.trackers.runner import runner
+from fuzzytrack.trackers.state import Gains, TrackState, spread
 
 __all__ = ["STARTS", "AlphaBetaTracker"]
 
@@ -109,22 +110,19 @@ class AlphaBetaTracker:
         layout = _Layout.of(plots, self.scheduler.coupled)
         _check_plots(plots)
         dts = _time_steps(times, plots.shape, state)
-        if state is not None and state.shape != plots.shape[1:]:
-            raise ValueError(
-                f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape "
-                f"{state.shape}"
-            )
+        _check_shape(plots, state)
         core = runner(self.scheduler, layout.lane_axes, self.start_mode == "two-point")
-        states = core.fresh(layout.lanes) if state is None else state.lanes
-        new_states, raw = core(
-            states,
+        after, raw = core(
+            core.fresh(layout.lanes) if state is None else state.lanes,
             layout.to_lanes(plots),
             layout.times_to_lanes(dts),
             layout.to_lanes(self._sigma(sigma, plots)),
         )
         outputs = {name: layout.from_lanes(values) for name, values in raw.items()}
         gains = Gains(*(outputs.pop(name) for name in ("alpha", "beta", "gamma")))
-        last = _last_state(core, layout, new_states, times, outputs, gains) if len(plots) else state
+        last = state
+        if len(plots):
+            last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
         return TrackResult(time=times, measured=plots, gains=gains, state=last, **outputs)
 
     def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
@@ -163,11 +161,22 @@ class AlphaBetaTracker:
     def _one_step(
         self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
     ) -> TrackState:
-        plot, time = np.asarray(z, dtype=np.float64), np.asarray(t, dtype=np.float64)
+        plots, times = np.asarray(z, dtype=np.float64)[None], np.asarray(t, dtype=np.float64)[None]
+        layout = _Layout.of(plots, self.scheduler.coupled)
+        _check_plots(plots)
+        _check_shape(plots, state)
+        dts = layout.times_to_lanes(_time_steps(times, plots.shape, state))
         deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
-        result = self.run(time[None], plot[None], deviation, state=state)
-        assert result.state is not None
-        return result.state
+        sigmas = layout.to_lanes(self._sigma(deviation, plots))
+        core = runner(self.scheduler, layout.lane_axes, self.start_mode == "two-point")
+        shape = (layout.lanes, layout.lane_axes)
+        after = core.step(
+            core.fresh(layout.lanes) if state is None else state.lanes,
+            plots.reshape(shape),
+            dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
+            np.broadcast_to(sigmas[0], shape).tolist(),
+        )
+        return TrackState(times[0], plots.shape[1:], after, core.rows)
 
     def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
         if sigma is None:
@@ -217,7 +226,7 @@ class _Layout:
 
     @property
     def lanes(self) -> int:
-        return int(np.prod(self.shape[1:], dtype=int)) // self.lane_axes
+        return math.prod(self.shape[1:]) // self.lane_axes
 
     def to_lanes(self, values: Array) -> Array:
         """Array that broadcasts with the plots, to one that does with (n_steps, lanes, axes)."""
@@ -229,14 +238,14 @@ class _Layout:
     def times_to_lanes(self, dts: Array) -> Array:
         if dts.ndim == 1:
             return dts[:, None]
-        flat = dts.reshape(len(dts), int(np.prod(dts.shape[1:], dtype=int)))
+        flat = dts.reshape(len(dts), math.prod(dts.shape[1:]))
         return np.repeat(flat, self.n_axes // self.lane_axes, axis=1)
 
     def from_lanes(self, values: Array) -> Array:
-        """Output of the runner in the shape of the plots; shared gains are repeated views."""
-        if values.ndim == 3 or not self.coupled or len(self.shape) == 1:
+        """Output of the runner in the shape of the plots."""
+        if values.ndim == 3:
             return values.reshape(self.shape)
-        return np.broadcast_to(values.reshape(*self.shape[:-1], 1), self.shape)
+        return spread(values, self.shape, self.lane_axes)
 
 
 def _check_plots(plots: Array) -> None:
@@ -244,6 +253,13 @@ def _check_plots(plots: Array) -> None:
     if bad.any():
         place = tuple(int(k) for k in np.argwhere(bad)[0])
         raise DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
+
+
+def _check_shape(plots: Array, state: TrackState | None) -> None:
+    if state is not None and state.shape != plots.shape[1:]:
+        raise ValueError(
+            f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape {state.shape}"
+        )
 
 
 def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) -> Array:
@@ -268,23 +284,3 @@ def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) 
             "later than the one before"
         )
     return dts
-
-
-def _last_state(
-    core: Runner,
-    layout: _Layout,
-    states: Array,
-    times: Array,
-    outputs: dict[str, Array],
-    gains: Gains,
-) -> TrackState:
-    return TrackState(
-        time=times[-1].copy(),
-        position=outputs["filtered"][-1].copy(),
-        velocity=outputs["velocity"][-1].copy(),
-        acceleration=outputs["acceleration"][-1].copy(),
-        predicted=outputs["predicted"][-1].copy(),
-        innovation=outputs["innovation"][-1].copy(),
-        gains=Gains(gains.alpha[-1].copy(), gains.beta[-1].copy(), gains.gamma[-1].copy()),
-        lanes=states,
-    )

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.trackers.rows import Rows
+
 __all__ = ["Gains", "TrackState"]
 
 Array = NDArray[np.float64]
@@ -36,27 +38,56 @@ class TrackState:
     ----------
     time : ndarray
         Time of the last step (s), shape () or that of the batch.
-    position, velocity, acceleration : ndarray
-        Estimates after the step (m, m/s, m/s²), shaped as a plot. Position is NaN before the first
-        plot, velocity 0 before it is known.
-    predicted, innovation : ndarray
-        Of the last step (m); NaN where there was none.
-    gains : Gains
-        Of the last step.
-    lanes : ndarray, shape (rows, lanes)
-        The tracker's own representation; see `fuzzytrack.trackers.runner.Rows`.
+    shape : tuple of int
+        Shape of a plot: (n_axes,), (n_tracks, n_axes), or () for one axis alone.
+    lanes : ndarray, shape (rows.kept, lanes)
+        All numbers, laid out as `rows` says.
+    rows : Rows
+        The layout.
     """
 
     time: Array
-    position: Array
-    velocity: Array
-    acceleration: Array
-    predicted: Array
-    innovation: Array
-    gains: Gains
+    shape: tuple[int, ...]
     lanes: Array
+    rows: Rows
+
+    def _read(self, row: int, count: int) -> Array:
+        return self.lanes[row : row + count].T.reshape(self.shape)
 
     @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of a plot: (n_axes,), (n_tracks, n_axes), or () for one axis alone."""
-        return self.position.shape
+    def position(self) -> Array:
+        """Position (m), shaped as a plot; NaN before the first plot."""
+        return self._read(self.rows.position, self.rows.n_axes)
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity (m/s); 0 before it is known."""
+        return self._read(self.rows.velocity, self.rows.n_axes)
+
+    @property
+    def acceleration(self) -> Array:
+        """Acceleration (m/s²); 0 before it is known."""
+        return self._read(self.rows.acceleration, self.rows.n_axes)
+
+    @property
+    def predicted(self) -> Array:
+        """Position before the last plot was used (m); NaN until the tracker has started."""
+        return self._read(self.rows.predicted, self.rows.n_axes)
+
+    @property
+    def innovation(self) -> Array:
+        """Last plot minus prediction (m); NaN where there was no prediction or no plot."""
+        return self._read(self.rows.innovation, self.rows.n_axes)
+
+    @property
+    def gains(self) -> Gains:
+        """Gains of the last step."""
+        rows = self.lanes[self.rows.gains : self.rows.gains + 3]
+        return Gains(*(spread(row, self.shape, self.rows.n_axes) for row in rows))
+
+
+def spread(gains: Array, shape: tuple[int, ...], lane_axes: int) -> Array:
+    """Gains of lanes in the shape of the plots; those that axes share become repeated views."""
+    if lane_axes == 1:
+        return gains.reshape(shape)
+    return np.broadcast_to(gains.reshape(*shape[:-1], 1), shape)

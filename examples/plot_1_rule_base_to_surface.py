@@ -1,0 +1,39 @@
+"""
+What does one cell of the table do?
+===================================
+
+A rule base is a table of words. Its control surface is what the words mean in numbers: load a
+table, look at its surface, change one cell, and look again.
+"""
+
+# %%
+# Load a rule base that comes with fuzzytrack. The inputs say how wrong a prediction was and
+# whether that grows; the outputs are the stiffness and the damping of the filter.
+import fuzzytrack as ft
+from fuzzytrack.fuzzy.saving import dumps_rulebase, set_cell
+
+rules = ft.load_rulebase("stiffness-damping")
+text = dumps_rulebase(rules)
+print(text[text.index("rules:") :])
+
+# %%
+# The words are fuzzy sets. They crowd around zero, where small errors are told apart.
+ft.plot_memberships(rules)
+
+# %%
+# From words to numbers: along E = ze every cell says L-L, large stiffness and large damping, and
+# there runs the ridge.
+ft.plot_surface(rules)
+
+# %%
+# Now one cell: where there is no error and no change of it, say Z-Z instead of L-L. Only the text
+# of that cell changes.
+edited = ft.loads_rulebase(set_cell(text, {"E": "ze", "dE": "ze"}, "Z-Z"))
+for name in ("before", "after"):
+    system = ft.FuzzySystem(rules if name == "before" else edited)
+    values = system(E=0.0, dE=0.0)
+    print(f"{name:6}  stiffness {values['stiffness']:.3f}  damping {values['damping']:.3f}")
+
+# %%
+# The ridge has a notch, as wide as the sets of that cell and no wider.
+ft.plot_surface(edited, style="contour")

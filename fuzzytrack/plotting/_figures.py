@@ -1,0 +1,143 @@
+"""What all pictures share: figures and axes, colours, legends, ticks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
+from numpy.typing import NDArray
+
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.system import FuzzySystem
+
+AxesArray = NDArray[np.object_]
+
+# Okabe and Ito (2008): told apart by people with any colour vision; yellow is left out.
+BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+)
+BLACK = "black"
+COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+MARKERS = ("o", "s", "^", "D", "v", "P")
+INK, GREY = "0.15", "0.55"
+# Perceptually uniform, readable in grey and with any colour vision.
+COLORMAP = "viridis"
+PLAIN = FuncFormatter(lambda value, _: f"{value:.4g}")
+
+
+def choice(name: str, value: object, allowed: Sequence[str]) -> None:
+    """Raise ValueError unless `value` is one of the words allowed for the parameter `name`."""
+    if value not in allowed:
+        raise ValueError(f"{name}: unknown {value!r}; one of {', '.join(allowed)}")
+
+
+def rules_of(rules: RuleBase | FuzzySystem) -> RuleBase:
+    """Rule base behind what a user gave."""
+    if isinstance(rules, RuleBase):
+        return rules
+    if isinstance(rules, FuzzySystem):
+        return rules.rules
+    raise ValueError(f"rules: must be a RuleBase or a FuzzySystem, got {type(rules).__name__}")
+
+
+def panels(
+    name: str,
+    given: Axes | Sequence[Axes] | AxesArray | None,
+    count: int,
+    *,
+    columns: int,
+    size: tuple[float, float],
+    three_d: bool = False,
+    **subplots: Any,
+) -> tuple[Figure, AxesArray]:
+    """Figure and `count` axes: the `given` ones, or new ones with `columns` in a row.
+
+    `size` is that of one panel, in inches.
+    """
+    if given is None:
+        columns = min(columns, count)
+        rows = -(-count // columns)
+        figure, grid = plt.subplots(
+            rows,
+            columns,
+            figsize=(size[0] * columns, size[1] * rows),
+            layout="constrained",
+            squeeze=False,
+            subplot_kw={"projection": "3d"} if three_d else None,
+            **subplots,
+        )
+        for spare in grid.ravel()[count:]:
+            spare.remove()
+        return figure, grid.ravel()[:count]
+    axes = np.atleast_1d(np.asarray(given, dtype=object)).ravel()
+    if len(axes) != count or not all(isinstance(a, Axes) for a in axes):
+        kinds = ", ".join(type(a).__name__ for a in axes) or "nothing"
+        raise ValueError(f"{name}: needs {count} matplotlib Axes, got {kinds}")
+    if three_d and not all(a.name == "3d" for a in axes):
+        raise ValueError(
+            f"{name}: style='surface' needs axes made with projection='3d', got flat ones; "
+            "style='contour' takes flat ones"
+        )
+    if not three_d and any(a.name == "3d" for a in axes):
+        raise ValueError(f"{name}: needs flat axes, got ones made with projection='3d'")
+    return figure_of(axes[0]), axes
+
+
+def figure_of(ax: Axes) -> Figure:
+    """Topmost figure that holds `ax`."""
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    return figure
+
+
+def legend_below(ax: Axes) -> None:
+    """Legend under the x axis, where it covers nothing, in as many columns as there is room for."""
+    handles, labels = ax.get_legend_handles_labels()
+    box, figure = ax.get_position(), figure_of(ax)
+    width, height = box.width * figure.get_figwidth() * 72, box.height * figure.get_figheight() * 72
+    # In points: so wide is a letter, and the line before the words; it may stand out a little.
+    columns = max(1, int(1.15 * width / (5.0 * max(map(len, labels)) + 42)))
+    rows = -(-len(handles) // columns)
+    ax.legend(
+        loc="upper center",
+        # Clears the axis label in a panel of any height.
+        bbox_to_anchor=(0.5, -42 / height),
+        ncols=-(-len(handles) // rows),
+        frameon=False,
+        borderaxespad=0.0,
+    )
+
+
+def ticks(low: float, high: float, count: int) -> list[float]:
+    """About `count` round numbers, and both ends."""
+    inside = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    apart = 0.09 * (high - low)
+    # Zero as such, not what is left of a sum of steps.
+    tiny = 1e-9 * (high - low)
+    between = [0.0 if abs(t) < tiny else float(t) for t in inside if low + apart < t < high - apart]
+    return [low, *between, high]
+
+
+def span_axis(ax: Axes, which: str, low: float, high: float, count: int = 6) -> None:
+    """Limits of an axis at the ends of a universe, and ticks that name both ends."""
+    axis = getattr(ax, f"{which}axis")
+    getattr(ax, f"set_{which}lim")(low, high)
+    axis.set_major_locator(FixedLocator(ticks(low, high, count)))
+    axis.set_major_formatter(PLAIN)
+
+
+def finish(ax: Axes) -> None:
+    """Light grid behind the data, and no frame on top and right."""
+    ax.set_axisbelow(True)
+    ax.grid(True, color="0.9", linewidth=0.8)
+    ax.spines[["top", "right"]].set_visible(False)

@@ -1,0 +1,244 @@
+"""The plane of α and β: which gains a tracker visited, and where they are stable."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.gains.wdomain import alpha_beta_from_w
+from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.state import Gains
+
+__all__ = ["plot_gain_plane"]
+
+Array = NDArray[np.float64]
+Box = tuple[tuple[float, float], tuple[float, float]]
+Visited = Gains | TrackResult
+
+# A cloud smaller than this part of the triangle gets an inset.
+SMALL = 0.4
+
+
+def plot_gain_plane(
+    gains: Visited | Mapping[str, Visited],
+    box: RuleBase | FuzzySystem | Box | None = None,
+    *,
+    mark: Mapping[str, tuple[float, float]] | None = None,
+    inset: bool | None = None,
+    ax: Axes | None = None,
+) -> tuple[Figure, Axes]:
+    """Plane of α and β: the gains visited, inside the stability triangle.
+
+    Parameters
+    ----------
+    gains : Gains, TrackResult, or mapping of str to either
+        What to draw, with labels for the legend. Updates without gains (NaN) are left out, and
+        gains that repeat are drawn once.
+    box : RuleBase, FuzzySystem, or ((low, high), (low, high)), optional
+        Outline of what can be reached: limits of stiffness and of damping, or a rule base whose
+        outputs have limits (stiffness and damping, or alpha and beta).
+    mark : mapping of str to (alpha, beta), optional
+        Points to mark, by label.
+    inset : bool, optional
+        Whether to enlarge the gains in an inset; where they fill little of the triangle unless
+        given.
+    ax : Axes, optional
+        Axes to draw into.
+
+    Returns
+    -------
+    figure : Figure
+    ax : Axes
+        The inset, if there is one, is ``ax.child_axes[0]``.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not of an allowed form.
+
+    Notes
+    -----
+    Llinas et al. (1998), Eqs. 2.16 to 2.24 and Figs. 5.2 and 5.3. The triangle is α > 0, β > 0,
+    2α + β < 4. Equal poles (critical damping) lie on β = 2 - α ± 2√(1 - α), the gains of Benedict
+    and Bordner on β = α²/(2 - α).
+    """
+    clouds = _clouds(gains)
+    outline = {} if box is None else _outline(box)
+    marks = {label: _pair(label, point) for label, point in (mark or {}).items()}
+    figure, (plane,) = shared.panels("ax", ax, 1, columns=1, size=(6.4, 6.2))
+
+    _references(plane)
+    _draw(plane, clouds, outline, marks)
+    plane.set(
+        xlim=(-0.03, 2.06), ylim=(-0.06, 4.12), xlabel="position gain α", ylabel="velocity gain β"
+    )
+    plane.spines[["top", "right"]].set_visible(False)
+    interesting = [*clouds.values(), *marks.values(), *outline.values()]
+    points = np.concatenate([np.empty((0, 2)), *(np.reshape(p, (-1, 2)) for p in interesting)])
+    # What an unstable tracker visited may lie far outside, and is not what an inset is for.
+    inside = points[(points >= 0).all(axis=1) & (points <= (2.0, 4.0)).all(axis=1)]
+    if len(inside):
+        low, high = inside.min(axis=0), inside.max(axis=0)
+        small = bool(((high - low) <= SMALL * np.array([2.0, 4.0])).all())
+        if small if inset is None else inset:
+            _enlarge(plane, low, high, clouds, outline, marks)
+    shared.legend_below(plane)
+    return figure, plane
+
+
+def _clouds(gains: object) -> dict[str, Array]:
+    """For each label the distinct pairs (alpha, beta), shape (n, 2)."""
+    if isinstance(gains, Gains | TrackResult):
+        gains = {"gains visited": gains}
+    if not isinstance(gains, Mapping):
+        raise ValueError(
+            "gains: must be Gains, a TrackResult or a mapping from labels to them, "
+            f"got {type(gains).__name__}"
+        )
+    clouds = {}
+    for label, visited in gains.items():
+        found = visited.gains if isinstance(visited, TrackResult) else visited
+        if not isinstance(found, Gains):
+            raise ValueError(
+                f"gains: {label!r} must be Gains or a TrackResult, got {type(visited).__name__}"
+            )
+        pairs = np.stack(np.broadcast_arrays(found.alpha, found.beta), axis=-1).reshape(-1, 2)
+        clouds[str(label)] = np.unique(pairs[np.isfinite(pairs).all(axis=1)], axis=0)
+    return clouds
+
+
+def _pair(label: str, point: object) -> Array:
+    pair = np.asarray(point, dtype=np.float64)
+    if pair.shape != (2,) or not np.isfinite(pair).all():
+        raise ValueError(f"mark: {label!r} must be a pair (alpha, beta), got {point!r}")
+    return pair
+
+
+def _outline(box: RuleBase | FuzzySystem | Box) -> dict[str, Array]:
+    """Trace the gains along the edge of a box, shape (n, 2), with a label."""
+    direct, label = False, "limits of stiffness and damping"
+    if isinstance(box, RuleBase | FuzzySystem):
+        rules = shared.rules_of(box)
+        direct = {"alpha", "beta"} <= set(rules.output_names)
+        names = ("alpha", "beta") if direct else ("stiffness", "damping")
+        if not set(names) <= set(rules.output_names):
+            raise ValueError(
+                f"box: {rules.name} has outputs {', '.join(rules.output_names)}; "
+                "needed are stiffness, damping or alpha, beta"
+            )
+        label = f"limits of {rules.name}"
+        universes = [rules.output(name).universe for name in names]
+        limits = np.array([[u.low, u.high] for u in universes])
+    else:
+        limits = np.asarray(box, dtype=np.float64)
+    if limits.shape != (2, 2) or not (limits[:, 0] <= limits[:, 1]).all() or limits.min() < 0:
+        raise ValueError(
+            "box: must be ((low, high), (low, high)) of stiffness and damping, not negative, "
+            f"got {box!r}"
+        )
+    up = np.linspace(0.0, 1.0, 51)
+    first = np.concatenate([up, np.ones(51), up[::-1], np.zeros(51)])
+    second = np.concatenate([np.zeros(51), up, np.ones(51), up[::-1]])
+    corners = [a + (b - a) * part for (a, b), part in zip(limits, (first, second), strict=True)]
+    return {label: np.stack(corners if direct else alpha_beta_from_w(*corners), axis=-1)}
+
+
+def _references(ax: Axes, labels: bool = True) -> None:
+    def named(text: str) -> str:
+        return text if labels else "_nolegend_"
+
+    ax.fill([0, 2, 0], [0, 0, 4], facecolor="0.96", edgecolor="none", zorder=0)
+    ax.plot(
+        [0, 2, 0, 0],
+        [0, 0, 4, 0],
+        color=shared.INK,
+        linewidth=1.2,
+        label=named("edge of stability"),
+        zorder=1,
+    )
+    alpha = 1.0 - np.linspace(1.0, 0.0, 201) ** 2
+    root = 2.0 * np.sqrt(1.0 - alpha)
+    lower, upper = 2.0 - alpha - root, 2.0 - alpha + root
+    ax.plot(
+        np.concatenate([alpha, alpha[::-1]]),
+        np.concatenate([lower, upper[::-1]]),
+        color=shared.GREY,
+        linestyle="--",
+        linewidth=1.1,
+        label=named("critical damping"),
+        zorder=1,
+    )
+    # It leaves the triangle at 4 - 2√2.
+    alpha = np.linspace(0.0, 4.0 - 2.0 * np.sqrt(2.0), 201)
+    ax.plot(
+        alpha,
+        alpha**2 / (2.0 - alpha),
+        color=shared.GREY,
+        linestyle=":",
+        linewidth=1.6,
+        label=named("Benedict–Bordner"),
+        zorder=1,
+    )
+
+
+def _draw(
+    ax: Axes,
+    clouds: Mapping[str, Array],
+    outline: Mapping[str, Array],
+    marks: Mapping[str, Array],
+    size: float = 4.0,
+) -> None:
+    for number, (label, pairs) in enumerate(clouds.items()):
+        ax.plot(
+            *pairs.T,
+            linestyle="none",
+            marker=shared.MARKERS[number % len(shared.MARKERS)],
+            markersize=size,
+            markeredgewidth=0,
+            alpha=0.65,
+            color=shared.COLORS[number % len(shared.COLORS)],
+            label=label,
+            zorder=3,
+        )
+    for label, curve in outline.items():
+        ax.plot(*curve.T, color=shared.INK, linewidth=1.0, label=label, zorder=2)
+    for number, (label, pair) in enumerate(marks.items()):
+        style: dict[str, Any] = {"marker": "*+x"[number % 3], "markersize": 2.0 * size + 3}
+        ax.plot(
+            *pair[:, None],
+            linestyle="none",
+            color="black",
+            markeredgewidth=1.0,
+            markerfacecolor="white",
+            label=label,
+            zorder=4,
+            **style,
+        )
+
+
+def _enlarge(
+    ax: Axes,
+    low: Array,
+    high: Array,
+    clouds: Mapping[str, Array],
+    outline: Mapping[str, Array],
+    marks: Mapping[str, Array],
+) -> None:
+    """Inset above the triangle's long side, where the plane is empty."""
+    margin = np.maximum(0.15 * (high - low), (0.01, 0.02))
+    window = ax.inset_axes((0.60, 0.56, 0.39, 0.42))
+    _references(window, labels=False)
+    _draw(window, clouds, outline, marks, size=5.0)
+    window.set_xlim(low[0] - margin[0], high[0] + margin[0])
+    window.set_ylim(low[1] - margin[1], high[1] + margin[1])
+    window.locator_params(nbins=5)
+    window.tick_params(labelsize=8)
+    ax.indicate_inset_zoom(window, edgecolor=shared.INK, alpha=0.6)

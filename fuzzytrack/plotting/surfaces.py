@@ -1,0 +1,402 @@
+"""Control surfaces, and the relational matrix behind them."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from fuzzytrack.fuzzy.inference import output_grid
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
+from fuzzytrack.fuzzy.variable import Universe, Variable
+from fuzzytrack.gains.wdomain import bilinear
+from fuzzytrack.plotting import _figures as shared
+
+__all__ = ["plot_gain_surfaces", "plot_relation", "plot_surface"]
+
+Array = NDArray[np.float64]
+
+STYLES = ("surface", "contour")
+GAIN_LABELS = {
+    "alpha": "position gain α",
+    "beta": "velocity gain β",
+    "gamma": "acceleration gain γ",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class _Picture:
+    """One panel: values over one input, or over two as ``values[i, j]`` at ``x[i], y[j]``."""
+
+    label: str
+    inputs: tuple[Variable, ...]
+    grid: tuple[Array, ...]
+    values: Array
+
+
+def plot_surface(
+    rules: RuleBase | FuzzySystem,
+    output: str | None = None,
+    points: int = 101,
+    method: str | None = None,
+    style: str = "surface",
+    *,
+    inputs: tuple[str, str] | None = None,
+    at: Mapping[str, float] | None = None,
+    axes: Axes | Sequence[Axes] | None = None,
+) -> tuple[Figure, shared.AxesArray]:
+    """Control surface of one output, or of all outputs side by side.
+
+    Parameters
+    ----------
+    rules : RuleBase or FuzzySystem
+        What to draw. With one input the surface is a curve.
+    output : str, optional
+        Name of one output; all unless given.
+    points : int
+        Points an axis, at least 2.
+    method : {"exact", "relation", "table"}, optional
+        As for `fuzzytrack.fuzzy.system.FuzzySystem`; that of the system, ``exact`` for a rule base.
+    style : {"surface", "contour"}
+        In perspective, or as a map.
+    inputs : (str, str), optional
+        The two inputs to draw over; the first two unless given.
+    at : mapping, optional
+        Values of the other inputs, where there are more than two.
+    axes : Axes or sequence of Axes, optional
+        Axes to draw into, one an output; made with ``projection="3d"`` for ``style="surface"``.
+
+    Returns
+    -------
+    figure : Figure
+    axes : ndarray of Axes
+        One an output.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not one of the allowed ones.
+
+    Notes
+    -----
+    Llinas et al. (1998), Fig. 3.12.
+    """
+    system = _system(rules, method)
+    shared.choice("style", style, STYLES)
+    names = system.rules.output_names
+    if output is not None:
+        shared.choice("output", output, names)
+        names = (output,)
+    pictures = []
+    for name in names:
+        chosen, grid, values = _values(system, name, points, inputs, at)
+        label = system.rules.output(name).axis_label
+        pictures.append(_Picture(label, chosen, grid, values))
+    return _draw(pictures, style, axes)
+
+
+def plot_gain_surfaces(
+    rules: RuleBase | FuzzySystem,
+    points: int = 101,
+    method: str | None = None,
+    style: str = "surface",
+    *,
+    axes: Axes | Sequence[Axes] | None = None,
+) -> tuple[Figure, shared.AxesArray]:
+    """Surfaces of the gains of a tracker, over the inputs of its rule base.
+
+    Parameters
+    ----------
+    rules : RuleBase or FuzzySystem
+        With outputs ``stiffness`` and ``damping``, drawn as α and β by way of the w-domain, or
+        with outputs ``alpha`` and ``beta``, and maybe ``gamma``, drawn as they are.
+    points : int
+        Points an axis, at least 2.
+    method : {"exact", "relation", "table"}, optional
+        As for `plot_surface`.
+    style : {"surface", "contour"}
+        As for `plot_surface`.
+    axes : Axes or sequence of Axes, optional
+        Axes to draw into, one a gain; as for `plot_surface`.
+
+    Returns
+    -------
+    figure : Figure
+    axes : ndarray of Axes
+        One a gain.
+
+    Raises
+    ------
+    ValueError
+        If the outputs are no gains, or an argument is not one of the allowed ones.
+
+    Notes
+    -----
+    Llinas et al. (1998), Eq. 3.26 and Fig. 3.13.
+    """
+    system = _system(rules, method)
+    shared.choice("style", style, STYLES)
+    outputs = set(system.rules.output_names)
+    names: tuple[str, ...] = ("stiffness", "damping")
+    if outputs != set(names):
+        names = ("alpha", "beta", "gamma") if "gamma" in outputs else ("alpha", "beta")
+        if outputs != set(names):
+            raise ValueError(
+                f"rules: {system.rules.name} has outputs {', '.join(system.rules.output_names)}; "
+                "gains need stiffness, damping or alpha, beta or alpha, beta, gamma"
+            )
+    found = [_values(system, name, points, None, None) for name in names]
+    chosen, grid, _ = found[0]
+    gains = [values for _, _, values in found]
+    if names[0] == "stiffness":
+        gains = list(bilinear(gains[0], gains[1]))
+    labels = list(GAIN_LABELS.values())
+    pictures = [_Picture(labels[k], chosen, grid, values) for k, values in enumerate(gains)]
+    return _draw(pictures, style, axes)
+
+
+def _system(rules: RuleBase | FuzzySystem, method: str | None) -> FuzzySystem:
+    base = shared.rules_of(rules)
+    if method is not None:
+        shared.choice("method", method, METHODS)
+    if isinstance(rules, FuzzySystem):
+        if method in (None, rules.method):
+            return rules
+        return FuzzySystem(
+            base,
+            str(method),
+            fuzzification=rules.fuzzification,
+            table_nodes=rules.table_nodes,
+        )
+    return FuzzySystem(base, method or "exact")
+
+
+def _values(
+    system: FuzzySystem,
+    output: str,
+    points: int,
+    inputs: tuple[str, str] | None,
+    at: Mapping[str, float] | None,
+) -> tuple[tuple[Variable, ...], tuple[Array, ...], Array]:
+    """Find the inputs to draw over, their points, and the output there."""
+    rules = system.rules
+    if len(rules.inputs) > 1:
+        data = system.surface(output, points, inputs=inputs, at=at)
+        return (rules.input(data.x_name), rules.input(data.y_name)), (data.x, data.y), data.values
+    if points < 2:
+        raise ValueError(f"points: must be at least 2, got {points}")
+    if inputs or at:
+        raise ValueError(f"inputs, at: {rules.name} has one input; there is nothing to choose")
+    variable = rules.inputs[0]
+    x = np.linspace(variable.universe.low, variable.universe.high, points)
+    return (variable,), (x,), np.asarray(system(**{variable.name: x})[output])
+
+
+def _draw(
+    pictures: list[_Picture], style: str, axes: Axes | Sequence[Axes] | None
+) -> tuple[Figure, shared.AxesArray]:
+    draw: Callable[[Axes, _Picture], None]
+    if len(pictures[0].inputs) == 1:
+        draw, size = _curve, (4.8, 3.6)
+    elif style == "contour":
+        draw, size = _map, (5.0, 4.2)
+    else:
+        draw, size = _perspective, (5.0, 4.6)
+    figure, grid = shared.panels(
+        "axes",
+        axes,
+        len(pictures),
+        columns=3 if len(pictures) == 3 else 2,
+        size=size,
+        three_d=draw is _perspective,
+    )
+    for ax, picture in zip(grid, pictures, strict=True):
+        draw(ax, picture)
+    return figure, grid
+
+
+def _curve(ax: Axes, picture: _Picture) -> None:
+    (variable,), (x,) = picture.inputs, picture.grid
+    ax.plot(x, picture.values, color=shared.BLUE, linewidth=2)
+    shared.span_axis(ax, "x", variable.universe.low, variable.universe.high)
+    ax.set(xlabel=variable.axis_label, ylabel=picture.label)
+    shared.finish(ax)
+
+
+def _map(ax: Axes, picture: _Picture) -> None:
+    x, y = picture.grid
+    # contourf wants values[row, column], and y runs along the rows
+    values = np.ma.masked_invalid(picture.values.T)
+    low, high = _range(picture.values)
+    round_numbers = MaxNLocator(12).tick_values(low, high)
+    apart = 1e-6 * (high - low)
+    inside = [float(n) for n in round_numbers if low + apart < n < high - apart]
+    levels = [low, *inside, high]
+    filled = ax.contourf(x, y, values, levels=levels, cmap=shared.COLORMAP)
+    between = [level for level in inside if values.min() < level < values.max()]
+    if between:
+        ax.contour(x, y, values, levels=between, colors="white", linewidths=0.5, alpha=0.6)
+    shared.figure_of(ax).colorbar(
+        filled, ax=ax, label=picture.label, ticks=shared.ticks(low, high, 6), format="%.3g"
+    )
+    _name_inputs(ax, picture, 8)
+
+
+def _perspective(ax: Any, picture: _Picture) -> None:
+    x, y = np.meshgrid(*picture.grid, indexing="ij")
+    low, high = _range(picture.values)
+    ax.plot_surface(
+        x,
+        y,
+        picture.values,
+        rstride=1,
+        cstride=1,
+        cmap=shared.COLORMAP,
+        vmin=low,
+        vmax=high,
+        edgecolor=(0.1, 0.1, 0.1, 0.3),
+        linewidth=0.15,
+    )
+    ax.set_zlim(low, high)
+    ax.locator_params(axis="z", nbins=5)
+    ax.set_title(picture.label, y=0.98)
+    _name_inputs(ax, picture, 4, width=22)
+    # The labels run beside the ticks' numbers; those of two lines need more room.
+    ax.xaxis.labelpad, ax.yaxis.labelpad = (
+        8 if "\n" not in text else 18 for text in (ax.get_xlabel(), ax.get_ylabel())
+    )
+    ax.view_init(elev=32, azim=-125)
+    # Leaves room for the labels, which matplotlib does not count.
+    ax.set_box_aspect(None, zoom=0.84)
+
+
+def _range(values: Array) -> tuple[float, float]:
+    """Range of the finite values, opened a little where they are all the same."""
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        margin = 0.01 * max(abs(low), 1e-6)
+        low, high = low - margin, high + margin
+    return low, high
+
+
+def _name_inputs(ax: Axes, picture: _Picture, ticks: int, width: int = 60) -> None:
+    for which, variable in zip("xy", picture.inputs, strict=True):
+        shared.span_axis(ax, which, variable.universe.low, variable.universe.high, ticks)
+        getattr(ax, f"set_{which}label")(textwrap.fill(variable.axis_label, width))
+
+
+def plot_relation(
+    rules: RuleBase | FuzzySystem,
+    output: str | None = None,
+    *,
+    at: float | None = None,
+    axes: Axes | Sequence[Axes] | None = None,
+) -> tuple[Figure, shared.AxesArray]:
+    """Relational matrix of a system with one input, as an image, and a slice through it.
+
+    Parameters
+    ----------
+    rules : RuleBase or FuzzySystem
+        With one input.
+    output : str, optional
+        Name of the output; the first unless given.
+    at : float, optional
+        Input at which to draw the slice: the fuzzy output there.
+    axes : Axes or sequence of Axes, optional
+        Axes to draw into: one, or two with `at`.
+
+    Returns
+    -------
+    figure : Figure
+    axes : ndarray of Axes
+        The image, and the slice if there is one.
+
+    Raises
+    ------
+    ValueError
+        If there are more inputs than one, the output is unknown, or `at` lies outside the universe.
+
+    Notes
+    -----
+    Llinas et al. (1998), Eqs. 3.3 to 3.5 and Figs. 3.4 and 3.5. The slice is the column of the
+    nearest grid point. With weighted centres the matrix has one row for each set of the output.
+    """
+    base = shared.rules_of(rules)
+    if len(base.inputs) != 1:
+        raise ValueError(
+            f"rules: {base.name} has inputs {', '.join(base.input_names)}; "
+            "a relational matrix can be drawn for one input"
+        )
+    name = base.output_names[0] if output is None else output
+    shared.choice("output", name, base.output_names)
+    variable, target = base.inputs[0], base.output(name)
+    universe = variable.universe
+    if at is not None and not universe.low <= at <= universe.high:
+        raise ValueError(f"at: must be within [{universe.low:g}, {universe.high:g}], got {at:g}")
+    system = rules if isinstance(rules, FuzzySystem) else FuzzySystem(base)
+    matrix = system.relation(name)
+
+    figure, grid = shared.panels("axes", axes, 1 if at is None else 2, columns=2, size=(4.8, 4.0))
+    y, _ = output_grid(base.operators, target)
+    by_set = base.operators.defuzzification == "weighted-centers"
+    _image(grid[0], figure, matrix, variable, target, by_set)
+    if at is not None:
+        column = int(universe.nearest(np.asarray(at)))
+        point = float(universe.values[column])
+        grid[0].axvline(point, color="white", linestyle="--", linewidth=1.5)
+        value = float(system.evaluate(np.array([[at]]))[name][0])
+        _slice(grid[1], y, matrix[column], target, f"{variable.name} = {point:g}", value, by_set)
+    return figure, grid
+
+
+def _image(
+    ax: Axes, figure: Figure, matrix: Array, variable: Variable, target: Variable, by_set: bool
+) -> None:
+    x = _edges(variable.universe)
+    y = np.arange(matrix.shape[1] + 1) - 0.5 if by_set else _edges(target.universe)
+    mesh = ax.pcolormesh(x, y, matrix.T, cmap=shared.COLORMAP, vmin=0.0)
+    figure.colorbar(mesh, ax=ax, label="membership in the relation")
+    shared.span_axis(ax, "x", variable.universe.low, variable.universe.high)
+    if by_set:
+        ax.set_yticks(range(len(target.sets)), target.set_names)
+    else:
+        shared.span_axis(ax, "y", target.universe.low, target.universe.high)
+    ax.set(xlabel=variable.axis_label, ylabel=target.axis_label)
+
+
+def _edges(universe: Universe) -> Array:
+    """Edges of the cells around the grid points."""
+    first = universe.first - universe.step / 2
+    return np.asarray(first + universe.step * np.arange(universe.points + 1))
+
+
+def _slice(
+    ax: Axes, y: Array, grades: Array, target: Variable, where: str, value: float, by_set: bool
+) -> None:
+    if by_set:
+        ax.vlines(y, 0.0, grades, color=shared.BLUE, linewidth=3, label=f"fuzzy output, {where}")
+    else:
+        ax.plot(y, grades, color=shared.BLUE, linewidth=2, label=f"fuzzy output, {where}")
+        ax.fill_between(y, grades, color=shared.BLUE, alpha=0.15, linewidth=0)
+    if np.isfinite(value):
+        ax.axvline(
+            value,
+            color=shared.VERMILION,
+            linestyle="--",
+            linewidth=1.5,
+            label=f"crisp output {value:.3g}",
+        )
+    ax.set_ylim(0.0, max(1.05 * float(grades.max()), 0.05))
+    shared.span_axis(ax, "x", target.universe.low, target.universe.high)
+    ax.set(xlabel=target.axis_label, ylabel="membership")
+    shared.finish(ax)
+    shared.legend_below(ax)
