@@ -1,0 +1,69 @@
+"""Options that several commands share, and how lists and pairs are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Annotated
+
+import typer
+
+from fuzzytrack.fuzzy.yamltree import suggestion
+
+__all__ = ["Axes", "Id", "Json", "Plots", "Seed", "Sort", "Time", "names", "numbers_at", "pairs"]
+
+Plots = Annotated[str, typer.Argument(metavar="FILE", help="CSV (or Parquet) file.")]
+Time = Annotated[
+    str | None, typer.Option(metavar="COL", help="Column of time (s). [default: t, t_s, time…]")
+]
+Id = Annotated[
+    str | None,
+    typer.Option(metavar="COL", help="Column that tells tracks apart. [default: one track]"),
+]
+Axes = Annotated[
+    str | None,
+    typer.Option(metavar="COL,COL", help="Columns of position. [default: x,y,z or x_m,y_m,z_m]"),
+]
+Sort = Annotated[bool, typer.Option("--sort", help="Put the plots in order of time.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the noise.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+
+
+def names(text: str, option: str) -> list[str]:
+    """Names with commas between them."""
+    found = [name.strip() for name in text.split(",")]
+    if not all(found):
+        raise ValueError(f"{option}: a name is missing in {text!r}; write A,B,C")
+    return found
+
+
+def pairs(text: str, option: str) -> dict[str, str]:
+    """Pairs ``name=value`` with commas between them."""
+    found: dict[str, str] = {}
+    for part in text.split(","):
+        name, equals, value = (word.strip() for word in part.partition("="))
+        if not (name and equals and value):
+            raise ValueError(f"{option}: expected NAME=VALUE,NAME=VALUE, got {text!r}")
+        if name in found:
+            raise ValueError(f"{option}: {name!r} is given twice")
+        found[name] = value
+    return found
+
+
+def numbers_at(text: str, wanted: Iterable[str], option: str = "--at") -> dict[str, float]:
+    """Numbers for each of the wanted names, written as pairs."""
+    wanted = tuple(wanted)
+    found = pairs(text, option)
+    numbers = {}
+    for name, value in found.items():
+        if name not in wanted:
+            raise ValueError(f"{option}: no such input {name!r}{suggestion(name, wanted)}")
+        try:
+            numbers[name] = float(value)
+        except ValueError:
+            raise ValueError(f"{option}: {name} must be a number, got {value!r}") from None
+        if numbers[name] != numbers[name]:
+            raise ValueError(f"{option}: {name} must be a number, got {value!r}")
+    missing = [name for name in wanted if name not in numbers]
+    if missing:
+        raise ValueError(f"{option}: needs {', '.join(missing)} too; got {text!r}")
+    return numbers

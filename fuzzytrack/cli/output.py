@@ -1,0 +1,127 @@
+"""What commands print: tables for people, JSON for programs, progress on stderr."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+__all__ = ["print_json", "print_table", "progress", "say", "show"]
+
+Progress = Callable[[float], None]
+
+
+def say(text: str = "") -> None:
+    """Print a line as it is, never folded."""
+    typer.echo(text)
+
+
+def show(number: float, digits: int = 4) -> str:
+    """Write a number for a table; a dash for what is not known."""
+    if not math.isfinite(number):
+        return "–" if math.isnan(number) else str(number)
+    text = f"{number:.{digits}g}"
+    # No powers of ten where plain digits are short.
+    return f"{number:.0f}" if "e+" in text and abs(number) < 1e9 else text
+
+
+def print_table(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    title: str = "",
+    words: int = 1,
+) -> None:
+    """Print a table as wide as the terminal, 80 characters where there is none.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Heads.
+    rows : sequence of sequence of str
+        Cells; a last row after an empty one stands under a line.
+    title : str
+        Line above the table.
+    words : int
+        How many columns, from the left, hold words; the others hold numbers.
+    """
+    from rich import box
+    from rich.console import Console
+    from rich.text import Text
+
+    table = _empty_table(box.SIMPLE_HEAD)
+    for number, name in enumerate(columns):
+        table.add_column(
+            Text(name),
+            justify="left" if number < words else "right",
+            overflow="fold",
+            no_wrap=number >= words,
+        )
+    for row in rows:
+        if not row:
+            table.add_section()
+        else:
+            table.add_row(*map(Text, row))
+    if title:
+        say(title)
+    console = Console(highlight=False)
+    with console.capture() as printed:
+        console.print(table)
+    for line in printed.get().splitlines():
+        say(line.rstrip())
+
+
+def _empty_table(style: Any) -> Table:
+    from rich.table import Table
+
+    return Table(box=style, show_edge=False, pad_edge=False, collapse_padding=True)
+
+
+def print_json(value: Any) -> None:
+    """Print a value as JSON; what is no number becomes null."""
+    say(json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return str(value) if isinstance(value, Path) else value
+
+
+@contextmanager
+def progress(label: str) -> Iterator[Progress]:
+    """Bar with the time left, on stderr, if that is a terminal.
+
+    Yields
+    ------
+    callable
+        To be called with the share of the work that is done.
+    """
+    if not sys.stderr.isatty():
+        yield lambda share: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(label, total=None)
+        yield lambda share: bar.update(task, completed=share, total=1.0)

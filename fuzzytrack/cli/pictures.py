@@ -1,0 +1,72 @@
+"""Pictures as files, without a display."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fuzzytrack.io.files import PathLike, check_output, whole_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from fuzzytrack.fuzzy.system import FuzzySystem
+
+__all__ = ["check_picture", "save_picture", "surfaces"]
+
+FORMATS = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps", ".ps")
+
+
+def check_picture(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
+    """Look ahead whether a picture can be written; ValueError or OSError if not."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        raise ValueError(
+            f"{path}: cannot draw {suffix or 'without suffix'}; one of {', '.join(FORMATS)}"
+        )
+    check_output(path, inputs)
+
+
+def save_picture(
+    path: PathLike, draw: Callable[[], Figure], inputs: tuple[PathLike, ...] = ()
+) -> None:
+    """Draw a picture and write it, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+        Its suffix gives the format.
+    draw : callable
+        Makes the figure.
+    inputs : tuple of str or path
+        Files that must not be overwritten.
+    """
+    check_picture(path, inputs)
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot as plt
+
+    figure = draw()
+    try:
+        with whole_file(path, inputs) as draft:
+            figure.savefig(draft, format=Path(path).suffix[1:].lower(), dpi=150)
+    finally:
+        plt.close(figure)
+
+
+def surfaces(system: FuzzySystem, points: int, at: dict[str, float] | None = None) -> Figure:
+    """Surfaces of all outputs; under them α and β, where the outputs are stiffness and damping."""
+    from matplotlib.figure import Figure
+
+    from fuzzytrack.plotting import plot_gain_surfaces, plot_surface
+
+    if at or set(system.rules.output_names) != {"stiffness", "damping"}:
+        return plot_surface(system, points=points, at=at)[0]
+    figure = Figure(figsize=(10.0, 8.8), layout="constrained")
+    flat = len(system.rules.inputs) == 1
+    axes = figure.subplots(2, 2, subplot_kw=None if flat else {"projection": "3d"})
+    plot_surface(system, points=points, axes=axes[0])
+    plot_gain_surfaces(system, points=points, axes=axes[1])
+    return figure

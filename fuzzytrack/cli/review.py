@@ -1,0 +1,189 @@
+"""What there is to say about a rule base that is right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.cli.output import show
+from fuzzytrack.cli.surface import gains_of
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.schedulers import FuzzyScheduler
+
+__all__ = ["Review", "review"]
+
+Array = NDArray[np.float64]
+
+# Points of the grid on which a rule base is looked at, over all inputs.
+_POINTS = 10_201
+_MAX_CELLS = 1_000_000
+_TABLE_INPUTS = 2
+# What counts as equal, against the largest value.
+_EQUAL = 1e-9
+
+
+@dataclass(frozen=True)
+class Review:
+    """Facts about a rule base, found on a grid over its inputs.
+
+    Attributes
+    ----------
+    rules : RuleBase
+        The rule base.
+    written : tuple of int or None
+        Combinations of sets with a rule, and all of them; None where they are too many to count.
+    silent : float
+        Share of the grid on which no rule fires.
+    ranges : dict of str to (float, float)
+        What each output reaches, and α and β where they follow from the outputs.
+    symmetry : str
+        What becomes of the outputs when all inputs change sign.
+    table_bounds : dict of str to float
+        Error bounds of the interpolation table; empty with more than two inputs.
+    schedules : str
+        How the rule base schedules gains; empty if it does not.
+    """
+
+    rules: RuleBase
+    written: tuple[int, int] | None
+    silent: float
+    ranges: dict[str, tuple[float, float]]
+    symmetry: str
+    table_bounds: dict[str, float]
+    schedules: str
+
+    def as_json(self) -> dict[str, Any]:
+        """Review as JSON prints it."""
+        return {
+            "name": self.rules.name,
+            "inputs": {v.name: len(v.sets) for v in self.rules.inputs},
+            "outputs": {v.name: len(v.sets) for v in self.rules.outputs},
+            "rules": len(self.rules.rules),
+            "combinations_with_a_rule": self.written and self.written[0],
+            "combinations": self.written and self.written[1],
+            "silent": self.silent,
+            "ranges": self.ranges,
+            "symmetry": self.symmetry,
+            "table_bounds": self.table_bounds,
+            "schedules": self.schedules,
+        }
+
+    def lines(self) -> Iterator[tuple[str, str]]:
+        """Review as a terminal prints it: what, and how it is."""
+        for role, variables in (("input", self.rules.inputs), ("output", self.rules.outputs)):
+            for variable in variables:
+                yield f"{role} {variable.name}", _variable(variable)
+        written = ""
+        if self.written:
+            written = f"; {self.written[0]} of {self.written[1]} combinations of sets have one"
+        yield "rules", f"{len(self.rules.rules)}{written}"
+        silent = f"no rule fires on {self.silent:.1%} of the inputs"
+        yield "coverage", silent if self.silent else "a rule fires everywhere"
+        for name, (low, high) in self.ranges.items():
+            yield f"{name} reaches", f"{show(low)} to {show(high)}"
+        yield "signs", self.symmetry
+        if self.table_bounds:
+            bounds = (f"{name} {show(bound, 2)}" for name, bound in self.table_bounds.items())
+            yield "table error", f"at most {', '.join(bounds)} (method table)"
+        yield "tracker", self.schedules or "schedules no gains"
+
+
+def review(rules: RuleBase) -> Review:
+    """Review a rule base.
+
+    Raises
+    ------
+    RuleBaseError, ValueError
+        If it means to schedule gains, and cannot.
+    """
+    settings = dict(rules.scheduler)
+    if settings:
+        FuzzyScheduler(rules)
+    system = FuzzySystem(rules)
+    grid = _grid(rules)
+    values = system.evaluate(grid)
+    return Review(
+        rules=rules,
+        written=_written(rules),
+        silent=float((system.strengths(grid).max(axis=1) == 0).mean()),
+        ranges={name: _ends(v) for name, v in {**values, **gains_of(values)}.items()},
+        symmetry=_symmetry(system, grid, values),
+        table_bounds=_table_bounds(rules),
+        schedules=", ".join(f"{key} {value}" for key, value in settings.items()),
+    )
+
+
+def _variable(variable: Variable) -> str:
+    universe = variable.universe
+    return (
+        f"{len(variable.sets)} sets on [{universe.low:g}, {universe.high:g}], "
+        f"{universe.points} points"
+    )
+
+
+def _grid(rules: RuleBase) -> Array:
+    """Regular grid over the inputs, its middle and ends included, shape (n, n_inputs)."""
+    points = max(3, round(_POINTS ** (1 / len(rules.inputs))) // 2 * 2 + 1)
+    points = min(points, 1001)
+    while points > 3 and points ** len(rules.inputs) > 2 * _POINTS:
+        points -= 2
+    axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs]
+    return np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
+
+
+def _written(rules: RuleBase) -> tuple[int, int] | None:
+    shape = tuple(len(v.sets) for v in rules.inputs)
+    # Python integers, which do not overflow
+    cells = 1
+    for count in shape:
+        cells *= count
+    if cells > _MAX_CELLS:
+        return None
+    has = np.zeros(shape, dtype=bool)
+    for rule in rules.rules:
+        conditions = dict(rule.conditions)
+        has[
+            tuple(
+                v.index(conditions[v.name]) if v.name in conditions else slice(None)
+                for v in rules.inputs
+            )
+        ] = True
+    return int(has.sum()), cells
+
+
+def _ends(values: Array) -> tuple[float, float]:
+    known = values[~np.isnan(values)]
+    return (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
+
+
+def _symmetry(system: FuzzySystem, grid: Array, values: dict[str, Array]) -> str:
+    rules = system.rules
+    if any(v.universe.low != -v.universe.high for v in rules.inputs):
+        return "not compared: the inputs do not reach as far below 0 as above"
+    found = {name: _parity(v, system.evaluate(-grid)[name]) for name, v in values.items()}
+    if len(set(found.values())) == 1:
+        return next(iter(found.values()))
+    return "; ".join(f"{name}: {what}" for name, what in found.items())
+
+
+def _parity(values: Array, mirrored: Array) -> str:
+    if not np.array_equal(np.isnan(values), np.isnan(mirrored)):
+        return "not symmetric"
+    scale = _EQUAL * float(np.nanmax(np.abs(values), initial=0.0))
+    apart = float(np.nanmax(np.abs(values - mirrored), initial=0.0))
+    if apart <= scale:
+        return "symmetric: the outputs stay when all inputs change sign"
+    if float(np.nanmax(np.abs(values + mirrored), initial=0.0)) <= scale:
+        return "symmetric: the outputs change sign with the inputs"
+    return f"not symmetric: an output changes by up to {show(apart, 2)} with the inputs' signs"
+
+
+def _table_bounds(rules: RuleBase) -> dict[str, float]:
+    # With more inputs a table takes long to measure, and is of little use.
+    return FuzzySystem(rules).table_bounds if len(rules.inputs) <= _TABLE_INPUTS else {}

@@ -1,0 +1,166 @@
+"""Rule bases and their reasons, as tables and as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.cli.output import print_table, say, show
+from fuzzytrack.cli.surface import gains_of
+from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
+from fuzzytrack.fuzzy.system import FuzzySystem
+
+__all__ = ["as_json", "explanation", "print_explanation", "print_rulebase"]
+
+
+def as_json(rules: RuleBase) -> dict[str, Any]:
+    """Rule base as JSON prints it."""
+
+    def variables(role: str) -> list[dict[str, Any]]:
+        return [
+            {
+                "name": v.name,
+                "label": v.label,
+                "unit": v.unit,
+                "universe": [v.universe.low, v.universe.high, v.universe.points],
+                "grid": v.universe.grid,
+                "default": v.default,
+                "sets": {s.name: {s.shape: list(s.parameters)} for s in v.sets},
+            }
+            for v in getattr(rules, role)
+        ]
+
+    return {
+        "name": rules.name,
+        "description": rules.description,
+        "source": rules.source,
+        "inputs": variables("inputs"),
+        "outputs": variables("outputs"),
+        "operators": {
+            "and": rules.operators.conjunction,
+            "or": rules.operators.disjunction,
+            "defuzzification": rules.operators.defuzzification,
+        },
+        "rules": [_rule(rule) for rule in rules.rules],
+        "scheduler": dict(rules.scheduler),
+    }
+
+
+def _rule(rule: Rule) -> dict[str, Any]:
+    then = [
+        {"output": c.output, "set": c.set_name, "confidence": c.confidence}
+        for c in rule.consequents
+    ]
+    return {"if": dict(rule.conditions), "then": then}
+
+
+def print_rulebase(rules: RuleBase) -> None:
+    """Print a rule base: its variables, their sets, its rules."""
+    say(rules.name)
+    for text in filter(None, (rules.description, rules.source and f"Source: {rules.source}")):
+        _print_prose(text)
+    say()
+    for role in ("inputs", "outputs"):
+        _print_variables(role, rules)
+    operators = rules.operators
+    say(
+        f"and: {operators.conjunction}, or: {operators.disjunction}, "
+        f"defuzzification: {operators.defuzzification}"
+    )
+    if rules.scheduler:
+        say(f"scheduler: {', '.join(f'{key} {value}' for key, value in rules.scheduler)}")
+    say()
+    if rules.layout:
+        _print_rule_table(rules, rules.layout)
+    else:
+        for rule in rules.rules:
+            say(f"  {rule}")
+
+
+def _print_prose(text: str) -> None:
+    from rich.console import Console
+
+    Console(highlight=False, markup=False).print(text)
+
+
+def _print_variables(role: str, rules: RuleBase) -> None:
+    rows: list[list[str]] = []
+    for variable in getattr(rules, role):
+        universe = variable.universe
+        what = f"[{universe.low:g}, {universe.high:g}], {universe.points} points"
+        if universe.grid != "ends":
+            what += f", {universe.grid}"
+        label = variable.axis_label if variable.label or variable.unit else ""
+        rows += [[]] if rows else []
+        for number, fuzzy_set in enumerate(variable.sets):
+            first = [variable.name, what] if number == 0 else ["", label if number == 1 else ""]
+            parameters = ", ".join(f"{p:.4g}" for p in fuzzy_set.parameters)
+            rows.append([*first, fuzzy_set.name, fuzzy_set.shape, parameters])
+        if variable.default is not None:
+            rows.append(["", f"where no rule fires: {variable.default:g}", "", "", ""])
+    print_table([role, "universe", "set", "shape", "parameters"], rows, words=5)
+    say()
+
+
+def _print_rule_table(rules: RuleBase, layout: TableLayout) -> None:
+    columns, rows = rules.input(layout.columns), rules.input(layout.rows)
+    width = len(columns.sets)
+    cells = [_cell(rule, layout.cells) for rule in rules.rules]
+    body = [
+        [name, *cells[number * width : (number + 1) * width]]
+        for number, name in enumerate(rows.set_names)
+    ]
+    title = f"{'-'.join(layout.cells)} by {layout.rows} (down) and {layout.columns} (across)"
+    print_table([f"{layout.rows} \\ {layout.columns}", *columns.set_names], body, title=title)
+
+
+def _cell(rule: Rule, order: tuple[str, ...]) -> str:
+    """Sets for each output in order, joined by hyphens; several of one output by plus signs."""
+    words = []
+    for output in order:
+        mine = [c for c in rule.consequents if c.output == output]
+        sure = [f"@{c.confidence:g}" if c.confidence != 1.0 else "" for c in mine]
+        words.append("+".join(c.set_name + s for c, s in zip(mine, sure, strict=True)) or "·")
+    return "-".join(words)
+
+
+# -------------------------------------------------------------------- reasons
+
+
+def explanation(system: FuzzySystem, point: dict[str, float]) -> dict[str, Any]:
+    """Rules that fire at a point, outputs there, and gains behind them."""
+    values = system.evaluate(np.array([[point[name] for name in system.rules.input_names]]))
+    return {
+        "rulebase": system.rules.name,
+        "method": system.method,
+        "at": point,
+        "rules": [
+            {"number": f.number, "strength": f.strength, **_rule(f.rule)}
+            for f in system.explain(**point)
+        ],
+        "outputs": {name: float(v[0]) for name, v in values.items()},
+        "gains": {name: float(v[0]) for name, v in gains_of(values).items()},
+    }
+
+
+def print_explanation(system: FuzzySystem, found: dict[str, Any]) -> None:
+    """Print an explanation; the strongest rule first."""
+    for name, value in found["at"].items():
+        universe = system.rules.input(name).universe
+        if not universe.low <= value <= universe.high:
+            end = universe.low if value < universe.low else universe.high
+            say(f"{name} = {value:g} is outside its universe and taken as {end:g}")
+    rules = system.rules.rules
+    rows = [
+        [str(f["number"]), f"{f['strength']:.4f}", str(rules[f["number"] - 1])]
+        for f in found["rules"]
+    ]
+    if rows:
+        print_table(["rule", "strength", "says"], rows, words=3)
+    else:
+        say("no rule fires here")
+    say()
+    for name, value in {**found["outputs"], **found["gains"]}.items():
+        unit = system.rules.output(name).unit if name in found["outputs"] else ""
+        say(f"{name} = {show(value, 6)}{' ' + unit if unit and unit != '1' else ''}")

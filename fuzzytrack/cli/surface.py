@@ -1,0 +1,102 @@
+"""The command that draws control surfaces."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.output import print_table, say, show
+from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
+from fuzzytrack.fuzzy.loading import load_rulebase
+from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.gains.wdomain import alpha_beta_from_w
+from fuzzytrack.io.files import check_output
+from fuzzytrack.io.tables import table_writer, write_table
+
+__all__ = ["grid_table", "surface"]
+
+Array = NDArray[np.float64]
+
+MAX_POINTS = 1001
+
+
+def surface(
+    rulebase: Annotated[str, typer.Argument(metavar="RULEBASE", help="Shipped name, or file.")],
+    output: Annotated[
+        str | None,
+        typer.Option("--output", "-o", metavar="FILE.png", help="Draw it (or .pdf, .svg…)."),
+    ] = None,
+    csv: Annotated[
+        str | None, typer.Option(metavar="FILE.csv", help="Write it, one row a grid point.")
+    ] = None,
+    points: Annotated[int, typer.Option(min=2, max=MAX_POINTS, help="Points an axis.")] = 101,
+    method: Annotated[str, typer.Option(metavar="M", help="exact, relation or table.")] = "exact",
+    at: Annotated[
+        str | None,
+        typer.Option(metavar="NAME=VALUE", help="Values of inputs after the second."),
+    ] = None,
+) -> None:
+    """Draw the control surface of a rule base.
+
+    All outputs; α and β as well, where the outputs are stiffness and damping.
+    """
+    system = FuzzySystem(load_rulebase(rulebase), method)
+    others = system.rules.input_names[2:]
+    if bool(others) != (at is not None):
+        example = ",".join(f"{name}=..." for name in others)
+        what = f"give the others a value with --at {example}" if others else "--at has no use"
+        raise ValueError(f"{system.rules.name} has {len(system.rules.inputs)} inputs; {what}")
+    fixed = {} if at is None else options.numbers_at(at, others)
+    if output is not None:
+        check_picture(output)
+    if csv is not None:
+        table_writer(csv)
+        check_output(csv)
+    table = grid_table(system, points, fixed)
+    if csv is not None:
+        write_table(csv, table)
+    if output is not None:
+        save_picture(output, lambda: surfaces(system, points, fixed or None))
+    _print_ranges(system, table)
+    for written in filter(None, (output, csv)):
+        say(f"wrote {written}")
+
+
+def grid_table(system: FuzzySystem, points: int, fixed: dict[str, float]) -> dict[str, Array]:
+    """Inputs, outputs, and gains behind the outputs, over a grid of the first two inputs."""
+    rules = system.rules
+    axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs[:2]]
+    axes += [np.array([fixed[name]]) for name in rules.input_names[2:]]
+    grid = np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
+    table = {name: grid[:, k] for k, name in enumerate(rules.input_names)}
+    table.update(system.evaluate(grid))
+    table.update(gains_of(table))
+    return table
+
+
+def gains_of(outputs: dict[str, Array]) -> dict[str, Array]:
+    """α and β of stiffness and damping; nothing for other outputs."""
+    if not {"stiffness", "damping"} <= set(outputs):
+        return {}
+    # NaN where no rule fires
+    known = ~np.isnan(outputs["stiffness"] + outputs["damping"])
+    gains = {name: np.full(known.shape, np.nan) for name in ("alpha", "beta")}
+    found = alpha_beta_from_w(outputs["stiffness"][known], outputs["damping"][known])
+    for name, values in zip(gains, found, strict=True):
+        gains[name][known] = values
+    return gains
+
+
+def _print_ranges(system: FuzzySystem, table: dict[str, Array]) -> None:
+    rows = []
+    for name, values in table.items():
+        if name in system.rules.input_names:
+            continue
+        known = values[~np.isnan(values)]
+        ends = (known.min(), known.max()) if known.size else (np.nan, np.nan)
+        rows.append([name, *map(show, ends)])
+    print_table(["output", "least", "largest"], rows)

@@ -1,0 +1,285 @@
+"""Recordings: the plots of one or more tracks in a file, and tracks written back to one."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.fuzzy.yamltree import suggestion
+from fuzzytrack.io.files import PathLike
+from fuzzytrack.io.tables import Kind, Progress, Table, Words, read_table, write_table
+from fuzzytrack.trackers.result import TrackResult
+
+__all__ = ["Recording", "Track", "read_tracks", "write_tracks"]
+
+Array = NDArray[np.float64]
+
+#: Names of columns that are found without being named.
+TIMES = ("t", "t_s", "time", "time_s")
+AXES = (("x", "y", "z"), ("x_m", "y_m", "z_m"))
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """The plots of one track.
+
+    Attributes
+    ----------
+    id : str
+        Identity, as the file spells it; empty if the file names none.
+    time : ndarray, shape (n_steps,)
+        Times (s), increasing.
+    plots : ndarray, shape (n_steps, n_axes)
+        Positions, NaN where missed.
+    """
+
+    id: str
+    time: Array
+    plots: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """The tracks of a file, in order of first appearance.
+
+    Attributes
+    ----------
+    file : str
+        Name of the file.
+    time, id : str
+        Names of the columns of time and of identity; the latter empty if there is none.
+    axes : tuple of str
+        Names of the columns of position.
+    tracks : tuple of Track
+        At least one, with at least one plot each.
+    """
+
+    file: str
+    time: str
+    id: str
+    axes: tuple[str, ...]
+    tracks: tuple[Track, ...]
+
+
+def read_tracks(
+    path: PathLike,
+    *,
+    time: str | None = None,
+    id: str | None = None,
+    axes: Sequence[str] | None = None,
+    sort: bool = False,
+    progress: Progress | None = None,
+) -> Recording:
+    """Read the plots of tracks.
+
+    Parameters
+    ----------
+    path : str or path
+        CSV or Parquet; see `fuzzytrack.io.tables.read_table`. Columns that are not named are
+        ignored.
+    time : str, optional
+        Column of time (s); t, t_s, time or time_s unless given.
+    id : str, optional
+        Column of the identity of tracks, kept as text; one track unless given.
+    axes : sequence of str, optional
+        Columns of position; x, y, z or x_m, y_m, z_m, those that there are, unless given. An empty
+        cell, ``nan`` or ``NA`` is a missed plot.
+    sort : bool
+        Whether to put plots in order of time.
+    progress : callable, optional
+        Called with the share of the file that has been read.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    DataError
+        If the file does not hold such tracks: names row, column, value and what was expected.
+    OSError
+        If it cannot be read.
+    """
+    chosen: dict[str, tuple[str, ...]] = {}
+
+    def wanted(names: tuple[str, ...]) -> dict[str, Kind]:
+        _check_header(names, str(path))
+        chosen["time"] = (_time_column(names, time, str(path)),)
+        chosen["axes"] = _axes_columns(names, axes, str(path))
+        if id is not None:
+            chosen["id"] = (_known(names, id, "--id", str(path)),)
+        every = [name for group in chosen.values() for name in group]
+        doubled = [name for name in every if every.count(name) > 1]
+        if doubled:
+            raise DataError(f"{path}: column {doubled[0]!r} cannot serve twice")
+        gaps: dict[str, Kind] = dict.fromkeys(chosen["axes"], "gaps")
+        words: dict[str, Kind] = dict.fromkeys(chosen.get("id", ()), "word")
+        return {chosen["time"][0]: "number", **words, **gaps}
+
+    table = read_table(path, wanted, progress)
+    name = "" if id is None else id
+    tracks = _tracks(table, chosen["time"][0], name, chosen["axes"], sort)
+    return Recording(table.file, chosen["time"][0], name, chosen["axes"], tracks)
+
+
+def write_tracks(
+    path: PathLike,
+    recording: Recording,
+    results: Sequence[TrackResult],
+    progress: Progress | None = None,
+) -> None:
+    """Write tracks with their plots, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+        CSV or Parquet by its suffix; not the file of the recording.
+    recording : Recording
+        The plots, track by track.
+    results : sequence of TrackResult
+        What a tracker made of each track.
+    progress : callable, optional
+        Called with the share that has been written.
+
+    Raises
+    ------
+    DataError
+        If the suffix is unknown, two columns would share a name, or the file is the recording's.
+    OSError
+        If the file cannot be written.
+
+    Notes
+    -----
+    Columns: identity (if any), time, and for each axis NAME (measured), NAME_predicted,
+    NAME_filtered, NAME_velocity, NAME_innovation, alpha_NAME, beta_NAME, and gamma_NAME if any is
+    not zero. Tracks follow each other.
+    """
+    write_table(path, _columns(recording, results), (recording.file,), progress)
+
+
+def _columns(
+    recording: Recording, results: Sequence[TrackResult]
+) -> Mapping[str, Sequence[str] | Array]:
+    columns: list[tuple[str, Sequence[str] | Array]] = []
+    if recording.id:
+        ids = [track.id for track in recording.tracks for _ in range(len(track.time))]
+        columns.append((recording.id, ids))
+    columns.append((recording.time, np.concatenate([r.time for r in results])))
+    gammas = np.concatenate([r.gains.gamma for r in results])
+    with_gamma = bool((np.nan_to_num(gammas) != 0.0).any())
+    for k, axis in enumerate(recording.axes):
+        for name, values in (
+            (axis, [r.measured for r in results]),
+            (f"{axis}_predicted", [r.predicted for r in results]),
+            (f"{axis}_filtered", [r.filtered for r in results]),
+            (f"{axis}_velocity", [r.velocity for r in results]),
+            (f"{axis}_innovation", [r.innovation for r in results]),
+            (f"alpha_{axis}", [r.gains.alpha for r in results]),
+            (f"beta_{axis}", [r.gains.beta for r in results]),
+        ):
+            columns.append((name, np.concatenate(values)[:, k]))
+        if with_gamma:
+            columns.append((f"gamma_{axis}", gammas[:, k]))
+    names = [name for name, _ in columns]
+    doubled = [name for name in names if names.count(name) > 1]
+    if doubled:
+        raise DataError(f"{recording.file}: two columns of the output would be {doubled[0]!r}")
+    return dict(columns)
+
+
+# -------------------------------------------------------------------- which columns
+
+
+def _check_header(names: tuple[str, ...], file: str) -> None:
+    """Say so where the first row cannot be one of names."""
+    if len(names) == 1:
+        for mark, word in ((";", "semicolons"), ("\t", "tabs")):
+            if mark in names[0]:
+                raise DataError(f"{file}: row 1: separated by {word}; expected commas")
+
+
+def _known(names: tuple[str, ...], name: str, option: str, file: str) -> str:
+    if name not in names:
+        raise DataError(f"{file}: {option}: no column {name!r}{suggestion(name, names)}")
+    return name
+
+
+def _time_column(names: tuple[str, ...], time: str | None, file: str) -> str:
+    if time is not None:
+        return _known(names, time, "--time", file)
+    for name in TIMES:
+        if name in names:
+            return name
+    raise DataError(
+        f"{file}: no column {_either(TIMES)}; name the column of time with --time; "
+        f"there are {', '.join(names)}"
+    )
+
+
+def _axes_columns(names: tuple[str, ...], axes: Sequence[str] | None, file: str) -> tuple[str, ...]:
+    if axes is not None:
+        if not axes:
+            raise DataError(f"{file}: --axes: needs at least one column")
+        return tuple(_known(names, name, "--axes", file) for name in axes)
+    for group in AXES:
+        found = tuple(name for name in group if name in names)
+        if found:
+            return found
+    raise DataError(
+        f"{file}: no columns x, y or x_m, y_m; name those of position with --axes; "
+        f"there are {', '.join(names)}"
+    )
+
+
+def _either(words: Collection[str]) -> str:
+    *most, last = words
+    return f"{', '.join(most)} or {last}"
+
+
+# -------------------------------------------------------------------- which rows
+
+
+def _tracks(
+    table: Table, time_name: str, id_name: str, axes: tuple[str, ...], sort: bool
+) -> tuple[Track, ...]:
+    times = table.numbers[time_name]
+    nobody = Words(("",), np.zeros(len(times), dtype=np.int64))
+    ids = table.words[id_name] if id_name else nobody
+    # Stable: the order of the file within a track.
+    order = np.lexsort((times, ids.codes)) if sort else np.argsort(ids.codes, kind="stable")
+    codes, times = ids.codes[order], times[order]
+    wrong = np.flatnonzero((np.diff(times) <= 0) & (np.diff(codes) == 0)) + 1
+    if len(wrong):
+        first = wrong[np.argmin(table.rows[order[wrong]])]
+        before, here = order[first - 1], order[first]
+        raise _time_error(table, time_name, id_name and ids.names[codes[first]], before, here)
+    plots = np.stack([table.numbers[name][order] for name in axes], axis=1)
+    ends = np.searchsorted(codes, np.arange(len(ids.names) + 1))
+    return tuple(
+        Track(name, times[start:end], plots[start:end])
+        for name, start, end in zip(ids.names, ends[:-1], ends[1:], strict=True)
+    )
+
+
+def _time_error(table: Table, time_name: str, track: str, before: int, here: int) -> DataError:
+    times, rows = table.numbers[time_name], table.rows
+    first, second = rows[before], rows[here]
+    whose = f" (id {track!r})" if track else ""
+    if times[here] == times[before]:
+        # Several tracks in one file look like this when they are not told apart.
+        mend = "" if track else "; if these are several tracks, name the column of their id (--id)"
+        what = f"repeats that of row {first}"
+        wanted = f"expected times that differ{mend}"
+    else:
+        what = f"is earlier than {times[before]:.15g} in row {first}"
+        wanted = "expected increasing times; --sort puts them in order"
+        if not track:
+            wanted += ", and --id tells several tracks apart"
+    return DataError(
+        f"{table.file}: row {second}, column {time_name}: time {times[here]:.15g}{whose} "
+        f"{what}; {wanted}"
+    )

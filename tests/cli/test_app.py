@@ -1,0 +1,109 @@
+import json
+import subprocess
+import sys
+import warnings
+
+import pytest
+
+import fuzzytrack
+from fuzzytrack.cli import listing
+from fuzzytrack.errors import PluginWarning
+
+MAIN = [sys.executable, "-c", "from fuzzytrack.cli import main; main()"]
+
+
+def command(*words, **options):
+    return subprocess.run([*MAIN, *map(str, words)], capture_output=True, text=True, **options)
+
+
+def test_version(run):
+    assert run("--version").stdout == f"fuzzytrack {fuzzytrack.__version__}\n"
+
+
+def test_help(run):
+    assert "rulebase" in run("--help").stdout
+    assert "--trackers" in run("compare", "-h").stdout
+    for words in ([], ["rulebase"]):
+        result = run(*words)
+        assert "Usage:" in result.output
+
+
+def test_help_loads_nothing_heavy():
+    code = (
+        "import sys\n"
+        "from fuzzytrack.cli.app import app\n"
+        "heavy = {'numba', 'matplotlib', 'scipy', 'skfuzzy', 'pyarrow'} & set(sys.modules)\n"
+        "sys.exit(', '.join(sorted(heavy)) or None)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stderr == ""
+
+
+def test_unknown_command(fails):
+    assert "No such command 'trak'" in fails("trak")
+
+
+def test_trackers(run):
+    text = run("trackers").stdout
+    assert "stiffness-damping" in text
+    assert "alpha, beta, gamma=0.0" in text
+    found = json.loads(run("trackers", "--json").stdout)
+    assert {"kind", "name", "parameters", "source", "package"} == set(found[0])
+
+
+def test_warnings_are_one_line_on_stderr(run, monkeypatch):
+    def warn():
+        warnings.warn("plug-in 'x' of y\ncould not be loaded", PluginWarning, stacklevel=2)
+        return ()
+
+    monkeypatch.setattr(listing, "catalog", warn)
+    result = run("trackers", "--json")
+    assert result.stderr == "warning: plug-in 'x' of y could not be loaded\n"
+    assert result.stdout == "[]\n"
+
+
+def test_bugs_are_not_hidden(run, monkeypatch):
+    def bug():
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(listing, "catalog", bug)
+    assert isinstance(run("trackers").exception, ZeroDivisionError)
+
+
+def test_processes_end_with_one_line_and_status_2(tmp_path):
+    (tmp_path / "a.csv").write_text("t,x,t2\n0,0,0\n1,abc,0\n")
+    done = command("track", "a.csv", "-o", "b.csv", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == (
+        "error: a.csv: row 3, column x: 'abc'; expected a finite number, or an empty cell or nan "
+        "for a missed plot\n"
+    )
+    assert [p.name for p in tmp_path.iterdir()] == ["a.csv"]
+    good = command("track", "a.csv", "--axes", "t2", "--json", cwd=tmp_path)
+    assert (good.returncode, good.stderr) == (0, "")
+    assert json.loads(good.stdout)["axes"] == ["t2"]
+
+
+def test_reader_that_goes_away():
+    with subprocess.Popen(
+        [*MAIN, "rulebase", "schema"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        process.stdout.close()
+        assert b"Traceback" not in process.stderr.read()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_interrupted_process(tmp_path):
+    code = (
+        "import signal, os\n"
+        "from fuzzytrack.cli import tracking, main\n"
+        "tracking.run_tracks = lambda *a: signal.raise_signal(signal.SIGINT)\n"
+        "import sys; sys.argv = ['fuzzytrack', 'track', 'a.csv']\n"
+        "main()\n"
+    )
+    (tmp_path / "a.csv").write_text("t,x\n0,0\n")
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (130, "interrupted\n")

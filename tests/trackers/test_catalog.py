@@ -1,0 +1,122 @@
+import pytest
+
+from fuzzytrack import AlphaBetaTracker, FixedGains, RuleBaseError, load_rulebase
+from fuzzytrack.fuzzy.saving import save_rulebase
+from fuzzytrack.schedulers import schedulers
+from fuzzytrack.trackers import trackers
+from fuzzytrack.trackers.catalog import catalog, make_tracker
+
+
+@pytest.fixture
+def toy():
+    """Plug-ins that take parameters of every sort."""
+
+    class Toy(FixedGains):
+        def __init__(self, level: int, word: str = "a", maybe: float | None = None,
+                     flag: bool = False, loose=None) -> None:  # fmt: skip
+            super().__init__(0.5, 0.2)
+            for name, value in (("level", level), ("word", word), ("maybe", maybe),
+                                ("flag", flag), ("loose", loose)):  # fmt: skip
+                object.__setattr__(self, name, value)
+
+    schedulers.register("toy")(Toy)
+    trackers.register("toy-tracker")(lambda scheduler, width=2: AlphaBetaTracker(Toy(width)))
+    trackers.register("toy-broken")(lambda: "nothing")
+    yield
+    schedulers.unregister("toy")
+    trackers.unregister("toy-tracker")
+    trackers.unregister("toy-broken")
+
+
+def test_rule_bases_by_name_and_file(tmp_path):
+    rules = load_rulebase("stiffness-damping")
+    assert make_tracker("stiffness-damping").scheduler.rules == rules
+    for name in ("mine.yaml", "MINE.YML"):
+        save_rulebase(rules, tmp_path / name)
+        assert make_tracker(str(tmp_path / name)).scheduler.rules == rules
+    one = make_tracker(f" {tmp_path / 'mine.yaml'}:method=relation:start=one-point ")
+    assert (one.scheduler.method, one.start_mode) == ("relation", "one-point")
+
+
+def test_upper_case_suffix_is_a_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    save_rulebase(load_rulebase("chan-style"), "A.YAML")
+    assert make_tracker("A.YAML").scheduler.rules.name == "chan-style"
+
+
+def test_fixed_gains():
+    tracker = make_tracker("fixed:alpha=0.5:beta=.2:gamma=1e-2:start=one-point")
+    assert tracker == AlphaBetaTracker(FixedGains(0.5, 0.2, 0.01), start="one-point")
+
+
+def test_trackers_take_schedulers_and_rule_bases_by_name():
+    assert make_tracker("alpha-beta:scheduler=chan-style") == make_tracker("chan-style")
+    assert make_tracker("fuzzy:rules=chan-style") == make_tracker("chan-style")
+
+
+@pytest.mark.usefixtures("toy")
+def test_values_follow_the_annotations():
+    made = make_tracker("toy:level=3:word=1:maybe=2:flag=yes:loose=4").scheduler
+    assert (made.level, made.word, made.maybe, made.flag, made.loose) == (3, "1", 2.0, True, 4)
+    assert make_tracker("toy:level=3:loose=1.5").scheduler.loose == 1.5
+    assert make_tracker("toy:level=3:loose=x").scheduler.loose == "x"
+    assert make_tracker("toy-tracker:scheduler=x:width=5").scheduler.level == 5
+
+
+@pytest.mark.parametrize(
+    ("spec", "message"),
+    [
+        ("", "a name is missing"),
+        ("stifness-damping", "no such tracker; did you mean 'stiffness-damping'.*fixed.*yaml"),
+        ("fixed:alpha=.5", "needs beta; write it as :beta=...; parameters: alpha, beta, gamma=0.0"),
+        ("fixed:alhpa=.5:beta=.2", "unknown parameter 'alhpa'; did you mean 'alpha'.*allowed"),
+        ("fixed:alpha=a:beta=.2", "alpha must be a number, got 'a'"),
+        ("fixed:alpha=1:alpha=1", "parameter 'alpha' is given twice"),
+        ("fixed:.5:beta=.2", "'.5' is no parameter; write parameters as name=value"),
+        ("fixed:alpha=3:beta=1", "tracker 'fixed:alpha=3:beta=1': alpha, beta must lie"),
+        ("chan-style:start=q", "start: unknown 'q'"),
+        ("chan-style:method=q", "unknown 'q'"),
+        ("chan-style:metod=table", "did you mean 'method'"),
+        ("alpha-beta", "needs scheduler"),
+        ("alpha-beta:strat=1", "unknown parameter 'strat'; did you mean 'start'"),
+        ("alpha-beta:scheduler=q", "no such tracker"),
+        ("toy:level=1.5", "level must be a whole number, got '1.5'"),
+        ("toy:level=1:flag=perhaps", "flag must be true or false"),
+        ("toy:level=1:maybe=x", "maybe must be a number"),
+        ("toy-broken", "its plug-in made a str"),
+    ],
+)
+@pytest.mark.usefixtures("toy")
+def test_mistakes(spec, message):
+    with pytest.raises(ValueError, match=message):
+        make_tracker(spec)
+
+
+@pytest.mark.parametrize("spec", ["valve", "nowhere.yaml", r"C:\nowhere.yaml:method=table",
+                                  "fuzzy:rules=stif"])  # fmt: skip
+def test_mistakes_in_rule_bases(spec):
+    with pytest.raises(RuleBaseError):
+        make_tracker(spec)
+
+
+def test_annotations_for_type_checkers_only(monkeypatch):
+    def factory(scheduler: "Absent" = None, k: "Absent" = 1):  # noqa: F821
+        return AlphaBetaTracker(FixedGains(0.5, k / 10))
+
+    trackers.register("toy-late")(factory)
+    try:
+        assert make_tracker("toy-late:k=3").scheduler.beta == 0.3
+    finally:
+        trackers.unregister("toy-late")
+
+
+@pytest.mark.usefixtures("toy")
+def test_everything_listed_has_a_name_parameters_and_package():
+    entries = {(e.kind, e.name): e for e in catalog()}
+    assert entries["rule base", "stiffness-damping"].parameters == (
+        "method=exact", "start=two-point")  # fmt: skip
+    assert entries["scheduler", "fixed"].parameters[:3] == ("alpha", "beta", "gamma=0.0")
+    assert entries["scheduler", "fixed"].package == "fuzzytrack"
+    assert "Llinas" in entries["tracker", "alpha-beta"].source
+    assert ("rule base", "valve") not in entries
+    assert ("tracker", "toy-tracker") in entries
