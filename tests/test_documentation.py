@@ -17,7 +17,7 @@ def blocks(page, language):
     return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), flags=re.M | re.S)
 
 
-@pytest.fixture()
+@pytest.fixture
 def a_folder_with_plots(tmp_path, monkeypatch):
     """The quick start's file of plots, in an empty working directory."""
     (text,) = (b for b in blocks(ROOT / "docs" / "quickstart.md", "text") if b.startswith("t,x"))

@@ -89,11 +89,11 @@ def print_comparison(found: Comparison) -> None:
         rows.append([name, predicted, filtered, "" if k == 0 else f"{change:+.1f} %"])
     rows += [[], ["the plots themselves", "", show(found.measured_rmse), ""]]
     print_table(
-        ["RMSE of position", "predicted", "filtered", "vs first"],
+        ["RMSE of position (m)", "predicted", "filtered", "vs first"],
         rows,
         title=(
             f"{found.runs} runs of {found.scans.mean():.0f} scans, "
-            f"noise {found.sigma:g} on each axis, seed {found.seed}"
+            f"noise {found.sigma:g} m on each axis, seed {found.seed}"
         ),
     )
 

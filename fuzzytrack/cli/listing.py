@@ -6,20 +6,36 @@ from dataclasses import asdict
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, say
-from fuzzytrack.trackers.catalog import catalog
+from fuzzytrack.trackers.catalog import CatalogEntry, catalog
 
 __all__ = ["trackers"]
 
 
 def trackers(json: options.Json = False) -> None:
-    """List what there is to track with, plug-ins included."""
+    """List what there is to track with, with its source; plug-ins included."""
     entries = catalog()
     if json:
         print_json([asdict(entry) for entry in entries])
         return
-    rows = [[e.name, e.kind, ", ".join(e.parameters), e.package] for e in entries]
-    print_table(["name", "kind", "parameters", "package"], rows, words=4)
+    rows = [[e.name, e.kind, _origin(e.source, e.package)] for e in entries]
+    print_table(["name", "kind", "source"], rows, words=3)
+    say()
+    for names, parameters in _alike(entries).items():
+        say(f"{', '.join(names)}: {', '.join(parameters)}")
     say()
     say("Write NAME, NAME:parameter=value:parameter=value, or a rule-base file (.yaml).")
     say("For example fixed:alpha=0.5:beta=0.2, or stiffness-damping:method=table.")
-    say("Sources are printed with --json.")
+    say("A normalization is named in the settings of a rule base.")
+
+
+def _origin(source: str, package: str) -> str:
+    return source if package == "fuzzytrack" else f"{source} (package {package})".strip()
+
+
+def _alike(entries: tuple[CatalogEntry, ...]) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """Names that take the same parameters, and these."""
+    names: dict[tuple[str, ...], list[str]] = {}
+    for entry in entries:
+        if entry.parameters:
+            names.setdefault(entry.parameters, []).append(entry.name)
+    return {tuple(found): parameters for parameters, found in names.items()}

@@ -15,7 +15,7 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.yamltree import suggestion
-from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, schedulers
+from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, normalizations, schedulers
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
 
@@ -27,13 +27,14 @@ _FILE = (".yaml", ".yml")
 
 @dataclass(frozen=True)
 class CatalogEntry:
-    """Something that `make_tracker` makes a tracker of.
+    """Something that trackers are made of, by name.
 
     Attributes
     ----------
-    kind : {"rule base", "scheduler", "tracker"}
+    kind : {"rule base", "scheduler", "tracker", "normalization"}
     name : str
-        As a user writes it.
+        As a user writes it: for a normalization in the settings of a rule base, for the others
+        where a tracker is asked for.
     parameters : tuple of str
         Parameters that it takes after its name; those with a default as ``name=default``.
     source : str
@@ -50,7 +51,7 @@ class CatalogEntry:
 
 
 def catalog() -> tuple[CatalogEntry, ...]:
-    """List everything that has a name for `make_tracker`: rule bases, schedulers, trackers."""
+    """List everything that has a name: rule bases, schedulers, trackers, normalizations."""
     start = _spelt(_start_parameters())
     fuzzy = (*_spelt(_parameters(FuzzyScheduler, without="rules")), *start)
     entries = [
@@ -65,6 +66,10 @@ def catalog() -> tuple[CatalogEntry, ...]:
     for plugin in trackers:
         own = _spelt(_parameters(plugin.factory))
         entries.append(CatalogEntry("tracker", plugin.name, own, plugin.source, plugin.package))
+    for plugin in normalizations:
+        entries.append(
+            CatalogEntry("normalization", plugin.name, (), plugin.source, plugin.package)
+        )
     return tuple(entries)
 
 

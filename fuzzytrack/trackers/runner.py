@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 #: Lanes a block. Rows 4,096 bytes apart would share cache sets and evict one another.
 BLOCK = 248
 #: Lane-updates above which compiling pays; below, plain Python is done sooner.
-COMPILE_ABOVE = 100_000
+COMPILE_ABOVE = 200_000
 
 _GAINS = ("alpha", "beta", "gamma")
 

@@ -8,6 +8,7 @@ import pytest
 import fuzzytrack
 from fuzzytrack.cli import listing
 from fuzzytrack.errors import PluginWarning
+from fuzzytrack.trackers.catalog import CatalogEntry
 
 MAIN = [sys.executable, "-c", "from fuzzytrack.cli import main; main()"]
 
@@ -49,6 +50,15 @@ def test_trackers(run):
     assert "alpha, beta, gamma=0.0" in text
     found = json.loads(run("trackers", "--json").stdout)
     assert {"kind", "name", "parameters", "source", "package"} == set(found[0])
+    assert {"rule base", "scheduler", "tracker", "normalization"} == {row["kind"] for row in found}
+    assert all(row["source"] for row in found)
+    assert "Eqs. 3.20-3.21, after Chan" in " ".join(text.split())
+
+
+def test_plugins_name_their_package(run, monkeypatch):
+    entry = CatalogEntry("scheduler", "mine", (), "my paper", "my-package")
+    monkeypatch.setattr(listing, "catalog", lambda: (entry,))
+    assert "my paper (package my-package)" in run("trackers").stdout
 
 
 def test_warnings_are_one_line_on_stderr(run, monkeypatch):

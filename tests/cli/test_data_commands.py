@@ -191,7 +191,7 @@ def test_compare(run, truth):
     first, second = run(*words), run(*words)
     assert first.exit_code == 0
     assert first.stdout == second.stdout
-    assert first.stdout.startswith("5 runs of 18 scans, noise 3 on each axis, seed 2\n")
+    assert first.stdout.startswith("5 runs of 18 scans, noise 3 m on each axis, seed 2\n")
     for name in (*comparing.DEFAULT_TRACKERS.split(","), "the plots themselves"):
         assert f"\n{name} " in first.stdout
     assert max(map(len, first.stdout.splitlines())) <= 80

@@ -216,12 +216,12 @@ def test_streaming_resuming_and_chunks_agree_to_the_last_bit(data):
 
 def test_a_large_batch_runs_compiled_with_the_same_numbers():
     random = np.random.default_rng(5)
-    plots = np.cumsum(random.normal(size=(30, 2500, 2)), axis=0) * 10
+    plots = np.cumsum(random.normal(size=(30, 3500, 2)), axis=0) * 10
     plots[random.random(plots.shape) < 0.1] = np.nan
-    times = np.cumsum(random.uniform(0.5, 2, (30, 2500)), axis=0)
+    times = np.cumsum(random.uniform(0.5, 2, (30, 3500)), axis=0)
     tracker = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
-    batch = tracker.run(times, plots)  # 150,000 updates: above the limit
-    for track in (0, 247, 248, 2499):
+    batch = tracker.run(times, plots)  # 210,000 updates: above the limit
+    for track in (0, 247, 248, 3499):
         alone = tracker.run(times[:, track], plots[:, track])
         np.testing.assert_array_equal(alone.predicted, batch.predicted[:, track])
         np.testing.assert_array_equal(alone.gains.beta, batch.gains.beta[:, track])
