@@ -3,7 +3,6 @@
 import json
 import os
 import subprocess
-import sys
 import sysconfig
 import venv
 from pathlib import Path
@@ -76,11 +75,3 @@ def test_the_wheel_carries_the_rule_bases(environment, tmp_path):
     where, names = done.stdout.splitlines()
     assert Path(where).is_relative_to(site)
     assert "stiffness-damping" in names.split()
-
-
-def test_importing_fuzzytrack_stays_light(tmp_path):
-    heavy = ("matplotlib", "numba", "scipy", "skfuzzy", "typer", "rich")
-    code = f"import sys, fuzzytrack; print([m for m in {heavy!r} if m in sys.modules])"
-    done = run(sys.executable, "-c", code, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.strip() == "[]"
