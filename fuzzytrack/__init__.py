@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
-from fuzzytrack.errors import DataError, NoRuleFiresWarning, PluginWarning, RuleBaseError
-from fuzzytrack.fuzzy.fuzzification import Fuzzification
-from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, shipped_rulebases
-from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.gains.wdomain import alpha_beta_from_w, w_from_alpha_beta
-from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
-from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
-
+# For type checkers and editors; at run time a name is imported when it is first used, so that
+# `import fuzzytrack` costs next to nothing, and a program pays for what it uses.
 if TYPE_CHECKING:
+    from fuzzytrack.errors import DataError, NoRuleFiresWarning, PluginWarning, RuleBaseError
+    from fuzzytrack.fuzzy.fuzzification import Fuzzification
+    from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, shipped_rulebases
+    from fuzzytrack.fuzzy.rulebase import RuleBase
+    from fuzzytrack.fuzzy.system import FuzzySystem
+    from fuzzytrack.gains.wdomain import alpha_beta_from_w, w_from_alpha_beta
     from fuzzytrack.plotting import (
         plot_gain_plane,
         plot_gain_surfaces,
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
         plot_surface,
         plot_track,
     )
+    from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
+    from fuzzytrack.schedulers.certificate import certify
+    from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
 
 __version__ = "0.1.0"
 
@@ -42,6 +45,7 @@ __all__ = [
     "Tracker",
     "__version__",
     "alpha_beta_from_w",
+    "certify",
     "load_rulebase",
     "loads_rulebase",
     "plot_gain_plane",
@@ -53,14 +57,32 @@ __all__ = [
     "w_from_alpha_beta",
 ]
 
+_HOMES = {
+    "errors": ("DataError", "NoRuleFiresWarning", "PluginWarning", "RuleBaseError"),
+    "fuzzy.fuzzification": ("Fuzzification",),
+    "fuzzy.loading": ("load_rulebase", "loads_rulebase", "shipped_rulebases"),
+    "fuzzy.rulebase": ("RuleBase",),
+    "fuzzy.system": ("FuzzySystem",),
+    "gains.wdomain": ("alpha_beta_from_w", "w_from_alpha_beta"),
+    "plotting": (
+        "plot_gain_plane",
+        "plot_gain_surfaces",
+        "plot_memberships",
+        "plot_surface",
+        "plot_track",
+    ),
+    "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),
+    "schedulers.certificate": ("certify",),
+    "trackers": ("AlphaBetaTracker", "Gains", "TrackResult", "TrackState", "Tracker"),
+}
+_HOME = {name: f"fuzzytrack.{home}" for home, names in _HOMES.items() for name in names}
+
 
 def __getattr__(name: str) -> Any:
-    # Pictures need matplotlib, which is slow to import and absent where trackers run.
-    if name.startswith("plot_") and name in __all__:
-        from fuzzytrack import plotting
-
-        return getattr(plotting, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(importlib.import_module(_HOME[name]), name)
+    return value
 
 
 def __dir__() -> list[str]:

@@ -1,0 +1,85 @@
+"""Checks of arguments that the theory of gains shares; each returns what it has checked."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["finite", "inside", "nonnegative", "positive", "stable_gains", "within"]
+
+Floats = NDArray[np.float64]
+
+
+def finite(name: str, value: ArrayLike) -> Floats:
+    """`value` as an array of floats, all finite, or a ValueError that names it."""
+    array = np.asarray(value, dtype=np.float64)
+    return _all(name, array, np.isfinite(array), "finite")
+
+
+def nonnegative(name: str, value: ArrayLike) -> Floats:
+    """`value` as an array of floats, all finite and >= 0, or a ValueError that names it."""
+    array = np.asarray(value, dtype=np.float64)
+    return _all(name, array, np.isfinite(array) & (array >= 0), "finite and >= 0")
+
+
+def positive(name: str, value: ArrayLike) -> Floats:
+    """`value` as an array of floats, all finite and > 0, or a ValueError that names it."""
+    array = np.asarray(value, dtype=np.float64)
+    return _all(name, array, np.isfinite(array) & (array > 0), "finite and > 0")
+
+
+def within(name: str, value: ArrayLike, good: NDArray[np.bool_], range_: str) -> Floats:
+    """`value` as an array of floats where `good` holds, or a ValueError that names it."""
+    return _all(name, np.asarray(value, dtype=np.float64), good, range_)
+
+
+def inside(alpha: Floats, beta: Floats, gamma: Floats) -> NDArray[np.bool_]:
+    """Whether gains lie in the open stability region; false for NaN and infinity."""
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        triangle = (alpha > 0) & (alpha < 2) & (beta > 0) & (4 - 2 * alpha - beta > 0)
+        # γ = 0 is asked apart: there the filter has two states, and the product may underflow.
+        below = (gamma == 0) | ((gamma > 0) & (gamma * (2 - alpha) < 4 * alpha * beta))
+    good: NDArray[np.bool_] = triangle & below
+    return good
+
+
+def stable_gains(
+    alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0
+) -> tuple[Floats, Floats, Floats]:
+    """Gains of one common shape (views, not to be written to), all of them stable.
+
+    Raises
+    ------
+    ValueError
+        If gains lie outside the stability region (strictly: its edge is outside); names the
+        first such gains and the region.
+    """
+    a, b, c = np.broadcast_arrays(
+        *(np.asarray(gain, dtype=np.float64) for gain in (alpha, beta, gamma))
+    )
+    bad = ~inside(a, b, c)
+    if bad.any():
+        at = tuple(np.argwhere(bad)[0])
+        where = f" at index {_index(at)}" if at else ""
+        names, region, values = "alpha, beta", "", f"alpha={a[at]:g}, beta={b[at]:g}"
+        if (c != 0).any():
+            names += ", gamma"
+            region = " and to 0 <= gamma < 4 alpha beta / (2 - alpha)"
+            values += f", gamma={c[at]:g}"
+        raise ValueError(
+            f"{names} must keep to the stability triangle alpha > 0, beta > 0, "
+            f"2 alpha + beta < 4{region}; got {values}{where}"
+        )
+    return a, b, c
+
+
+def _all(name: str, array: Floats, good: NDArray[np.bool_], range_: str) -> Floats:
+    if not good.all():
+        at = tuple(np.argwhere(~good)[0])
+        where = f" at index {_index(at)}" if at else ""
+        raise ValueError(f"{name} must be {range_}, got {array[at]:g}{where}")
+    return array
+
+
+def _index(at: tuple[np.intp, ...]) -> str:
+    return str(tuple(map(int, at)) if len(at) > 1 else int(at[0]))

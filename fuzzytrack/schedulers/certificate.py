@@ -1,0 +1,128 @@
+"""Certified stability of a rule base that schedules gains."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.gains import certificate
+from fuzzytrack.gains.certificate import (
+    Certificate,
+    box_in_gains,
+    convex_hull,
+    polygon_in_gains,
+)
+
+__all__ = ["REACHES", "certify", "reachable_gains"]
+
+REACHES = ("universe", "rules")
+
+Array = NDArray[np.float64]
+
+
+def certify(
+    gains: ArrayLike | RuleBase, *, reach: str = "universe", max_length: int = 8
+) -> Certificate:
+    """Certify a set of gains, or all gains that a rule base can reach, under arbitrary switching.
+
+    Parameters
+    ----------
+    gains : array_like, shape (n, 2), or RuleBase
+        (α, β) pairs, whose convex hull is the set; or a rule base that schedules gains.
+    reach : {"universe", "rules"}
+        For a rule base, see `reachable_gains`.
+    max_length : int
+        Longest sequence of gains tried as a counter-example.
+
+    Returns
+    -------
+    Certificate
+
+    Raises
+    ------
+    RuleBaseError
+        If the rule base does not schedule α and β, see `reachable_gains`.
+    ValueError
+        If an argument is out of range.
+    """
+    points = reachable_gains(gains, reach) if isinstance(gains, RuleBase) else gains
+    return certificate.certify(points, max_length)
+
+
+def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
+    """Gains whose convex hull holds whatever a rule base can schedule.
+
+    Parameters
+    ----------
+    rules : RuleBase
+        With outputs stiffness and damping, or alpha and beta.
+    reach : {"universe", "rules"}
+        ``universe`` takes the box of the outputs' universes, whatever the rules say. ``rules``
+        takes the hull of what the single rules conclude, which is smaller; it is valid where every
+        value is a mean of them: weighted centres with product and sum.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        (α, β).
+
+    Raises
+    ------
+    RuleBaseError
+        If the outputs are others, or ``rules`` is not valid for the algebra.
+    ValueError
+        If `reach` is unknown.
+    """
+    if reach not in REACHES:
+        raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
+    names = sorted(rules.output_names, reverse="stiffness" in rules.output_names)
+    if names not in (["stiffness", "damping"], ["alpha", "beta"]):
+        raise RuleBaseError(
+            f"{rules.name} cannot be certified: needed are outputs stiffness and damping, or alpha "
+            f"and beta; it has {', '.join(rules.output_names)}"
+        )
+    w_domain = "stiffness" in names
+    if reach == "rules":
+        points = _rule_conclusions(rules, names)
+        return polygon_in_gains(convex_hull(points)) if w_domain else points
+    first, second = ((u.low, u.high) for u in (rules.output(name).universe for name in names))
+    if w_domain:
+        return box_in_gains(first, second)
+    return np.array([[alpha, beta] for alpha in first for beta in second])
+
+
+def _rule_conclusions(rules: RuleBase, names: list[str]) -> Array:
+    """What each rule concludes about the two outputs, shape (n_rules, 2)."""
+    operators = rules.operators
+    algebra = (operators.conjunction, operators.disjunction, operators.defuzzification)
+    if algebra != ("product", "sum", "weighted-centers"):
+        raise RuleBaseError(
+            "reach 'rules' needs product, sum and weighted-centers, where every output is a mean "
+            f"of what the rules conclude; {rules.name} has {', '.join(algebra)}: "
+            "use reach 'universe'"
+        )
+    rows = []
+    for rule in rules.rules:
+        totals, row = [], []
+        for name in names:
+            output = rules.output(name)
+            centers = dict(zip(output.set_names, output.centers().tolist(), strict=True))
+            shares = [
+                (c.confidence, centers[c.set_name]) for c in rule.consequents if c.output == name
+            ]
+            total = sum(share for share, _ in shares)
+            totals.append(total)
+            row.append(sum(share * center for share, center in shares) / total if total else 0.0)
+        if abs(totals[0] - totals[1]) > 1e-12:
+            raise RuleBaseError(
+                f"reach 'rules' needs rules that are as sure of {names[0]} as of {names[1]}; "
+                f"not so: {rule}"
+            )
+        if totals[0] > 0:
+            rows.append(row)
+    defaults = [rules.output(name).default for name in names]
+    if None not in defaults:
+        rows.append([float(d) for d in defaults if d is not None])
+    return np.array(rows)

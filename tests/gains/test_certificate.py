@@ -1,0 +1,180 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import fuzzytrack as ft
+from fuzzytrack.gains import alpha_beta_from_w
+from fuzzytrack.gains.certificate import (
+    box_in_gains,
+    certify,
+    convex_hull,
+    error_matrix,
+    polygon_in_gains,
+)
+
+PUBLISHED = (0.25, 0.35), (0.54, 0.89)
+WIDE = (0.2, 0.8), (0.0, 1.3)
+
+
+def simulate(matrices, rng, runs, steps):
+    """Largest length of the error after switching at random, from random starts of length 1."""
+    angle = rng.uniform(0, 2 * np.pi, runs)
+    error = np.stack([np.cos(angle), np.sin(angle)])
+    for _ in range(steps):
+        f = matrices[rng.integers(0, len(matrices), runs)]
+        error = np.stack([
+            f[:, 0, 0] * error[0] + f[:, 0, 1] * error[1],
+            f[:, 1, 0] * error[0] + f[:, 1, 1] * error[1],
+        ])  # fmt: skip
+    return np.hypot(*error).max()
+
+
+def test_the_published_limits_are_certified():
+    found = certify(box_in_gains(*PUBLISHED))
+    assert found.verdict == "certified"
+    assert found.rate == pytest.approx(0.815936, abs=1e-6)
+    np.testing.assert_allclose(found.lyapunov, [[1, -1.449921], [-1.449921, 4.374020]], rtol=2e-4)
+    assert not len(found.sequence)
+
+
+def test_the_wide_limits_are_refuted_by_a_sequence():
+    found = certify(box_in_gains(*WIDE))
+    assert found.verdict == "refuted"
+    assert found.rate == pytest.approx(1.516598, abs=1e-6)
+    assert found.growth == pytest.approx(1.355826, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("zeta", "growth"), [(0.0, 1.355826), (0.3, 1.159838), (0.5, 1.044697), (0.6, 0.989494)]
+)
+def test_growth_of_the_known_sequence(zeta, growth):
+    product = np.eye(2)
+    for omega0 in (0.2, 0.2, 0.2, 0.8):
+        product = error_matrix(*alpha_beta_from_w(omega0, zeta)) @ product
+    assert np.abs(np.linalg.eigvals(product)).max() ** 0.25 == pytest.approx(growth, abs=1e-6)
+    found = certify(box_in_gains((0.2, 0.8), (zeta, 1.3)))
+    if growth > 1:
+        assert found.verdict == "refuted"
+        assert found.growth >= growth - 1e-6
+    else:
+        assert found.verdict == "not decided"
+
+
+def test_damping_from_0_76_makes_the_wide_stiffness_safe():
+    assert certify(box_in_gains((0.2, 0.8), (0.76, 1.3))).verdict == "certified"
+    # Necessary is a damping above (w2 - w1)/(2 √(w1 w2)) = 0.75
+    assert certify(box_in_gains((0.2, 0.8), (0.74, 1.3))).verdict != "certified"
+
+
+def test_the_error_matrix_is_that_of_the_tracker():
+    """The prediction error of a tracker on noise-free, but wrongly started, tracks."""
+    alpha, beta, dt = 0.6, 0.3, 2.0
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta))
+    truth = np.zeros(6)
+    plots = truth.copy()
+    plots[:2] = 1.0, 4.0  # a wrong start
+    result = tracker.run(dt * np.arange(6), plots)
+    error = np.array([7.0, 3.0])  # prediction at the third plot, and T times velocity
+    for k in range(2, 6):
+        assert result.predicted[k] == pytest.approx(error[0])
+        error = error_matrix(alpha, beta) @ error
+
+
+@given(st.floats(0.05, 2), st.floats(1.01, 4), st.floats(0.05, 2), st.floats(0.0, 1.0))
+@settings(max_examples=40)
+def test_the_image_of_a_box_lies_in_the_hull(w1, ratio, z1, width):
+    box = (w1, w1 * ratio), (z1, z1 + width)
+    hull = convex_hull(box_in_gains(*box, pieces=3))
+    rng = np.random.default_rng(1)
+    inside = np.array(alpha_beta_from_w(rng.uniform(*box[0], 200), rng.uniform(*box[1], 200))).T
+    if len(hull) == 2:
+        return
+    following = np.roll(hull, -1, axis=0)
+    edge, to_point = following - hull, inside[:, None] - hull
+    side = edge[:, 0] * to_point[..., 1] - edge[:, 1] * to_point[..., 0]
+    assert side.min() > -1e-12
+
+
+def test_a_certified_matrix_contracts_every_gain_inside():
+    found = certify(box_in_gains(*PUBLISHED))
+    rng = np.random.default_rng(2)
+    alpha, beta = alpha_beta_from_w(rng.uniform(0.25, 0.35, 500), rng.uniform(0.54, 0.89, 500))
+    f, p = error_matrix(alpha, beta), found.lyapunov
+    excess = np.swapaxes(f, -1, -2) @ p @ f - found.rate**2 * p
+    assert np.linalg.eigvalsh(excess).max() < 1e-9
+
+
+def check_random_boxes(boxes, runs, steps, seed=3):
+    """No certified box lets the error outlive its rate; counts the verdicts."""
+    rng = np.random.default_rng(seed)
+    verdicts = []
+    for _ in range(boxes):
+        w1, z1 = rng.uniform(0.05, 1.0), rng.uniform(0.1, 1.0)
+        found = certify(
+            box_in_gains((w1, w1 * rng.uniform(1, 4)), (z1, z1 * rng.uniform(1, 3)), pieces=4),
+            max_length=4,
+        )
+        verdicts.append(found.verdict)
+        if found.verdict == "certified":
+            matrices = error_matrix(*found.vertices.T)
+            largest = simulate(matrices, rng, runs, steps)
+            spread = np.sqrt(np.linalg.cond(found.lyapunov))
+            # Errors that shrink below the smallest normal numbers keep a rounding error.
+            assert largest <= spread * found.rate**steps * (1 + 1e-6) + 1e-290
+    return verdicts
+
+
+def test_no_certified_box_diverges():
+    verdicts = check_random_boxes(boxes=40, runs=100, steps=200)
+    assert verdicts.count("certified") > 10
+    assert verdicts.count("refuted") > 0
+
+
+def test_a_refuting_sequence_really_diverges():
+    found = certify(box_in_gains(*WIDE))
+    error = np.array([1.0, 0.3])
+    for k in range(400):
+        error = error_matrix(*found.sequence[k % len(found.sequence)]) @ error
+    assert np.linalg.norm(error) > 0.01 * found.growth**400
+
+
+def test_a_single_pair_has_the_rate_of_its_poles():
+    found = certify([[0.5377, 0.2018]])
+    radius = np.abs(np.linalg.eigvals(error_matrix(0.5377, 0.2018))).max()
+    assert found.verdict == "certified"
+    assert found.rate == pytest.approx(radius, abs=1e-6)
+
+
+def test_unstable_gains_refute_themselves():
+    found = certify([[0.5, 0.2], [1.9, 1.0]])
+    assert found.verdict == "refuted"
+    np.testing.assert_array_equal(found.sequence, [[1.9, 1.0]])
+
+
+def test_polygons_of_no_area():
+    line = polygon_in_gains([(0.3, 0.5), (0.3, 0.9)])
+    assert certify(line).verdict == "certified"
+    assert len(convex_hull(np.array([[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]))) == 2
+
+
+@pytest.mark.parametrize(
+    ("gains", "message"),
+    [
+        ([], r"pairs \(alpha, beta\)"),
+        ([[0.5, 0.2, 0.1]], r"pairs \(alpha, beta\)"),
+        ([[0.5, np.nan]], "gains must be finite"),
+    ],
+)
+def test_bad_gains(gains, message):
+    with pytest.raises(ValueError, match=message):
+        certify(gains)
+
+
+def test_bad_arguments():
+    with pytest.raises(ValueError, match="max_length must be at least 1, got 0"):
+        certify([[0.5, 0.2]], max_length=0)
+    with pytest.raises(ValueError, match="stiffness must be 0 < low <= high"):
+        box_in_gains((0.0, 0.3), (0.5, 0.9))
+    with pytest.raises(ValueError, match="damping must be 0 <= low <= high"):
+        box_in_gains((0.2, 0.3), (0.9, 0.5))
