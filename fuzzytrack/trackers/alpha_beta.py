@@ -13,6 +13,7 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.rows import Rows
 from fuzzytrack.trackers.runner import runner
 from fuzzytrack.trackers.state import Gains, TrackState, spread
 
@@ -110,8 +111,8 @@ class AlphaBetaTracker:
         layout = _Layout.of(plots, self.scheduler.coupled)
         _check_plots(plots)
         dts = _time_steps(times, plots.shape, state)
-        _check_shape(plots, state)
         core = runner(self.scheduler, layout.lane_axes, self.start_mode == "two-point")
+        _check_state(plots, state, core.rows)
         after, raw = core(
             core.fresh(layout.lanes) if state is None else state.lanes,
             layout.to_lanes(plots),
@@ -164,11 +165,11 @@ class AlphaBetaTracker:
         plots, times = np.asarray(z, dtype=np.float64)[None], np.asarray(t, dtype=np.float64)[None]
         layout = _Layout.of(plots, self.scheduler.coupled)
         _check_plots(plots)
-        _check_shape(plots, state)
+        core = runner(self.scheduler, layout.lane_axes, self.start_mode == "two-point")
+        _check_state(plots, state, core.rows)
         dts = layout.times_to_lanes(_time_steps(times, plots.shape, state))
         deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
         sigmas = layout.to_lanes(self._sigma(deviation, plots))
-        core = runner(self.scheduler, layout.lane_axes, self.start_mode == "two-point")
         shape = (layout.lanes, layout.lane_axes)
         after = core.step(
             core.fresh(layout.lanes) if state is None else state.lanes,
@@ -176,7 +177,7 @@ class AlphaBetaTracker:
             dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
             np.broadcast_to(sigmas[0], shape).tolist(),
         )
-        return TrackState(times[0], plots.shape[1:], after, core.rows)
+        return TrackState(np.array(times[0]), plots.shape[1:], after, core.rows)
 
     def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
         if sigma is None:
@@ -255,11 +256,15 @@ def _check_plots(plots: Array) -> None:
         raise DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
 
 
-def _check_shape(plots: Array, state: TrackState | None) -> None:
-    if state is not None and state.shape != plots.shape[1:]:
+def _check_state(plots: Array, state: TrackState | None, rows: Rows) -> None:
+    if state is None:
+        return
+    if state.shape != plots.shape[1:]:
         raise ValueError(
             f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape {state.shape}"
         )
+    if state.rows != rows:
+        raise ValueError("state: it comes from a tracker whose scheduler remembers other things")
 
 
 def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) -> Array:

@@ -279,6 +279,16 @@ def test_a_state_goes_on_later_and_with_plots_of_its_shape():
         tracker.step(state, [0.0, 0.0], 5.0)
     with pytest.raises(ValueError, match="do not go on from a state of shape"):
         tracker.step(state, [0.0, 0.0, 0.0], 6.0)
+    other = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
+    with pytest.raises(ValueError, match="a tracker whose scheduler remembers other things"):
+        other.step(state, [0.0, 0.0], 6.0)
+
+
+def test_a_state_does_not_share_its_time_with_the_caller():
+    now = np.array([1.0, 2.0])
+    state = ft.AlphaBetaTracker(FIXED).start(np.zeros((2, 1)), now)
+    now += 5.0
+    assert state.time.tolist() == [1.0, 2.0]
 
 
 def test_sigma_may_be_missing_where_the_plot_is():
