@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 import fuzzytrack as ft
+from fuzzytrack.gains import noise_ratio
 
 STREAM_STEPS = 400
 
@@ -91,6 +92,8 @@ def measure(tracks: int, steps: int, repeats: int) -> dict[str, Any]:
         for name, tracker in trackers().items()
     }
     first = {name: seconds(work) for name, work in batches.items()}
+    alpha, beta = random.uniform(0.05, 0.95, (2, 1_000_000))
+    ratios = take_turns({"noise_ratio": lambda: noise_ratio(alpha, beta)}, repeats)
     batch = take_turns(batches, repeats)
     return {
         "machine": platform.processor() or platform.machine(),
@@ -100,6 +103,7 @@ def measure(tracks: int, steps: int, repeats: int) -> dict[str, Any]:
         "batch": {"tracks": tracks, "axes": 1, "steps": steps},
         "batch_million_updates_a_second": {k: tracks * steps / v / 1e6 for k, v in batch.items()},
         "first_run_seconds": first,
+        "million_noise_ratios_seconds": ratios["noise_ratio"],
     }
 
 
@@ -131,6 +135,7 @@ def show(figures: dict[str, Any]) -> None:
         "A batch keeps prediction, estimate, velocity, acceleration, innovation and three gains of "
         "every update, 64 bytes in all; an update is one axis of one track, on one core."
     )
+    print(f"1,000,000 noise ratios: {figures['million_noise_ratios_seconds']:.3f} s")
 
 
 def main() -> None:
