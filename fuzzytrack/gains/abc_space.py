@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import finite
+from fuzzytrack.gains.checks import finite
 from fuzzytrack.gains.stability import discriminant, factored, pair_distances
 
 __all__ = ["abc_preimages", "from_abc", "to_abc"]

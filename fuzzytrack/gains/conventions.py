@@ -7,7 +7,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import finite
+from fuzzytrack.gains.checks import finite
 
 __all__ = ["GAMMA_CONVENTIONS", "convert_gamma"]
 

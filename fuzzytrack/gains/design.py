@@ -11,7 +11,7 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import finite, nonnegative, positive, within
+from fuzzytrack.gains.checks import finite, nonnegative, positive, within
 from fuzzytrack.gains.stability import critical_curves
 
 __all__ = [

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import finite, inside, nonnegative, positive, stable_gains
+from fuzzytrack.gains.checks import finite, inside, nonnegative, positive, stable_gains
 from fuzzytrack.gains.performance import (
     circular_error,
     noise_ratio,

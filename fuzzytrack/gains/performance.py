@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import finite, nonnegative, positive, stable_gains
+from fuzzytrack.gains.checks import finite, nonnegative, positive, stable_gains
 
 __all__ = [
     "NoisyOutput",

@@ -12,7 +12,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import finite, inside
+from fuzzytrack.gains.checks import finite, inside
 
 __all__ = ["Region", "eigenfrequency", "is_stable", "jury", "poles", "region"]
 

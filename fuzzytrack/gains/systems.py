@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fuzzytrack.gains._checks import finite, positive
+from fuzzytrack.gains.checks import finite, positive
 
 if TYPE_CHECKING:
     from scipy.signal import dlti

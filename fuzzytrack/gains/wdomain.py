@@ -12,8 +12,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.gains._checks import nonnegative, positive, stable_gains
 from fuzzytrack.gains.abc_space import gains_from_distance
+from fuzzytrack.gains.checks import nonnegative, positive, stable_gains
 from fuzzytrack.gains.stability import factored
 
 __all__ = [

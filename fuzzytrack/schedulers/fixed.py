@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from fuzzytrack.gains.checks import finite, stable_gains
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
 
 __all__ = ["FixedGains"]
@@ -43,22 +43,8 @@ class FixedGains(GainScheduler):
 
     def __post_init__(self) -> None:
         for name in ("alpha", "beta", "gamma"):
-            value = float(getattr(self, name))
-            if not math.isfinite(value):
-                raise ValueError(f"{name} must be a finite number, got {value}")
-            object.__setattr__(self, name, value)
-        alpha, beta, gamma = self.alpha, self.beta, self.gamma
-        if not (0 < alpha < 2 and beta > 0 and 2 * alpha + beta < 4):
-            raise ValueError(
-                "alpha, beta must lie in the stability triangle alpha > 0, beta > 0, "
-                f"2 alpha + beta < 4; got alpha={alpha:g}, beta={beta:g}"
-            )
-        bound = 4 * alpha * beta / (2 - alpha)
-        if not 0 <= gamma < bound:
-            raise ValueError(
-                f"gamma must be at least 0 and below 4 alpha beta/(2 - alpha) = {bound:g} for "
-                f"alpha={alpha:g}, beta={beta:g}; got {gamma:g}"
-            )
+            object.__setattr__(self, name, float(finite(name, getattr(self, name))))
+        stable_gains(self.alpha, self.beta, self.gamma)
 
     def kernel(self, n_axes: int) -> Kernel:
         """Constant gains; see `GainScheduler.kernel`."""

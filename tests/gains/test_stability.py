@@ -16,7 +16,7 @@ from fuzzytrack.gains import (
     poles,
     region,
 )
-from fuzzytrack.gains._checks import nonnegative, stable_gains
+from fuzzytrack.gains.checks import nonnegative, stable_gains
 
 unit = st.floats(0.001, 0.999)
 

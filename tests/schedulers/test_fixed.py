@@ -38,14 +38,14 @@ def test_exactly_the_stable_pairs_are_accepted(alpha, beta):
     if largest < 1:
         assert FixedGains(alpha, beta).gamma == 0.0
     else:
-        with pytest.raises(ValueError, match="alpha, beta must lie in the stability triangle"):
+        with pytest.raises(ValueError, match="alpha, beta must keep to the stability triangle"):
             FixedGains(alpha, beta)
 
 
 @pytest.mark.parametrize("name", ["alpha", "beta", "gamma"])
 def test_gains_must_be_numbers(name):
     gains = {"alpha": 0.5, "beta": 0.2, "gamma": 0.0, name: float("nan")}
-    with pytest.raises(ValueError, match=f"{name} must be a finite number, got nan"):
+    with pytest.raises(ValueError, match=f"{name} must be finite, got nan"):
         FixedGains(**gains)
 
 
