@@ -10,6 +10,7 @@ from fuzzytrack import __version__
 from fuzzytrack.cli.comparing import compare
 from fuzzytrack.cli.demonstration import demo
 from fuzzytrack.cli.errors import Commands
+from fuzzytrack.cli.gains import certify, design, gains
 from fuzzytrack.cli.listing import trackers
 from fuzzytrack.cli.output import say
 from fuzzytrack.cli.rulebases import rulebase
@@ -33,6 +34,9 @@ app.command()(track)
 app.command()(compare)
 app.command()(surface)
 app.add_typer(rulebase, name="rulebase")
+app.command()(certify)
+app.command()(gains)
+app.add_typer(design, name="design")
 app.command()(trackers)
 
 

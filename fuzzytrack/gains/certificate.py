@@ -17,8 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Certificate",
-    "box_in_gains",
+    "box",
     "certify",
+    "certify_region",
     "convex_hull",
     "error_matrix",
     "polygon_in_gains",
@@ -80,23 +81,19 @@ def error_matrix(alpha: ArrayLike, beta: ArrayLike) -> Array:
     return np.stack([np.stack([1 - a - b, one], -1), np.stack([-b, one], -1)], -2)
 
 
-def box_in_gains(
-    stiffness: tuple[float, float], damping: tuple[float, float], pieces: int = 32
-) -> Array:
-    """Gains whose convex hull holds the image of a box of stiffness and damping.
+def box(stiffness: tuple[float, float], damping: tuple[float, float]) -> Array:
+    """Corners of a box of stiffness and damping, in order.
 
     Parameters
     ----------
     stiffness, damping : (float, float)
         Smallest and largest natural frequency and damping ratio in the w-domain, low <= high,
         stiffness positive, damping not negative.
-    pieces : int
-        Pieces into which each side is cut; more fit the image more closely.
 
     Returns
     -------
-    ndarray, shape (n, 2)
-        (α, β).
+    ndarray, shape (4, 2)
+        (stiffness, damping).
 
     Raises
     ------
@@ -108,27 +105,29 @@ def box_in_gains(
         raise ValueError(f"stiffness must be 0 < low <= high, got {stiffness}")
     if not (0 <= z1 <= z2 < np.inf):
         raise ValueError(f"damping must be 0 <= low <= high, got {damping}")
-    return polygon_in_gains([(w1, z1), (w2, z1), (w2, z2), (w1, z2)], pieces)
+    return np.array([(w1, z1), (w2, z1), (w2, z2), (w1, z2)])
 
 
-def polygon_in_gains(corners: ArrayLike, pieces: int = 32) -> Array:
-    """Gains whose convex hull holds the image of a polygon of (stiffness, damping).
+def polygon_in_gains(corners: ArrayLike, pieces: int = 32) -> tuple[Array, Array]:
+    """Image of a polygon of (stiffness, damping) in the gains, from outside and from inside.
 
     In p = 2ζω₀ and q = ω₀² an edge of the polygon becomes a parabola, whose hull is inside that of
-    its three control points; from there to (α, β) straight lines stay straight. So the hull of what
-    is returned holds the image exactly, not by sampling.
+    its three control points; from there to (α, β) straight lines stay straight. So the hull of the
+    first answer holds the image exactly, not by sampling.
 
     Parameters
     ----------
     corners : array_like, shape (n, 2)
         Corners of a convex polygon, in order.
     pieces : int
-        Pieces into which each edge is cut.
+        Pieces into which each edge is cut; more fit the image more closely.
 
     Returns
     -------
-    ndarray, shape (n, 2)
-        (α, β).
+    around : ndarray, shape (n, 2)
+        (α, β) whose convex hull holds the image; not all of them belong to it.
+    reached : ndarray, shape (m, 2)
+        (α, β) on the edge of the image.
     """
     ends = np.asarray(corners, dtype=np.float64)
     following = np.roll(ends, -1, axis=0)
@@ -139,20 +138,50 @@ def polygon_in_gains(corners: ArrayLike, pieces: int = 32) -> Array:
     p = np.stack([2 * z_a * w_a, z_a * w_b + z_b * w_a, 2 * z_b * w_b])
     q = np.stack([w_a * w_a, w_a * w_b, w_b * w_b])
     scale = 1 + p + q
-    points = np.stack([2 * p / scale, 4 * q / scale], axis=-1).reshape(-1, 2)
-    return np.unique(points, axis=0)
+    points = np.stack([2 * p / scale, 4 * q / scale], axis=-1)
+    around = np.unique(points.reshape(-1, 2), axis=0)
+    return around, np.unique(points[[0, 2]].reshape(-1, 2), axis=0)
 
 
-def certify(gains: ArrayLike, max_length: int = 8) -> Certificate:
+def certify_region(corners: ArrayLike, max_length: int = 8) -> Certificate:
+    """Certify all gains of a convex polygon of stiffness and damping; see `certify`.
+
+    Parameters
+    ----------
+    corners : array_like, shape (n, 2)
+        (stiffness, damping), in order; of a box, see `box`.
+    max_length : int
+        Longest sequence of gains tried as a counter-example.
+
+    Returns
+    -------
+    Certificate
+
+    Examples
+    --------
+    >>> found = certify_region(box((0.25, 0.35), (0.54, 0.89)))
+    >>> found.verdict, round(found.rate, 3)
+    ('certified', 0.816)
+    """
+    around, reached = polygon_in_gains(corners)
+    return certify(around, max_length, reached=reached)
+
+
+def certify(
+    gains: ArrayLike, max_length: int = 8, *, reached: ArrayLike | None = None
+) -> Certificate:
     """Certify a set of α-β gains that may switch arbitrarily from step to step.
 
     Parameters
     ----------
     gains : array_like, shape (n, 2)
-        (α, β) pairs; the set is their convex hull. See `box_in_gains` for a box of stiffness and
+        (α, β) pairs; the set is inside their convex hull. See `certify_region` for stiffness and
         damping.
     max_length : int
         Longest sequence of gains tried as a counter-example.
+    reached : array_like, shape (m, 2), optional
+        Gains that belong to the set for certain, of which counter-examples are made; `gains`
+        unless given.
 
     Returns
     -------
@@ -172,9 +201,8 @@ def certify(gains: ArrayLike, max_length: int = 8) -> Certificate:
 
     Examples
     --------
-    >>> found = certify(box_in_gains((0.25, 0.35), (0.54, 0.89)))
-    >>> found.verdict, round(found.rate, 3)
-    ('certified', 0.816)
+    >>> certify([[0.5377, 0.2018], [0.7, 0.28]]).verdict
+    'certified'
     """
     points = np.asarray(gains, dtype=np.float64)
     if points.ndim != 2 or points.shape[-1] != 2 or not len(points):
@@ -189,10 +217,13 @@ def certify(gains: ArrayLike, max_length: int = 8) -> Certificate:
     nothing = np.empty((0, 2))
     if rate < 1 - _MARGIN:
         return Certificate("certified", rate, lyapunov, vertices, nothing, np.nan)
-    chosen = _spread(vertices)
-    order, growth = _growing_sequence(matrices[chosen], max_length)
+    candidates = vertices
+    if reached is not None:
+        candidates = convex_hull(np.asarray(reached, dtype=np.float64))
+    candidates = candidates[_spread(candidates)]
+    order, growth = _growing_sequence(error_matrix(*candidates.T), lyapunov, max_length)
     if growth > 1 + _MARGIN:
-        sequence = vertices[chosen][list(order)]
+        sequence = candidates[list(order)]
         return Certificate("refuted", rate, lyapunov, vertices, sequence, growth)
     return Certificate("not decided", rate, lyapunov, vertices, nothing, np.nan)
 
@@ -257,10 +288,12 @@ def _spread(vertices: Array) -> NDArray[np.intp]:
     return np.array(chosen)
 
 
-def _growing_sequence(matrices: Array, max_length: int) -> tuple[tuple[int, ...], float]:
+def _growing_sequence(
+    matrices: Array, lyapunov: Array, max_length: int
+) -> tuple[tuple[int, ...], float]:
     """Sequence of matrices with the largest growth per step that a beam search finds."""
     best: tuple[tuple[int, ...], float] = ((), 0.0)
-    for orders, products in _beam(matrices, max_length):
+    for orders, products in _beam(matrices, lyapunov, max_length):
         radius = np.abs(np.linalg.eigvals(products)).max(axis=-1) ** (1 / len(orders[0]))
         top = int(np.argmax(radius))
         if radius[top] > best[1] * (1 + _MARGIN):
@@ -268,14 +301,15 @@ def _growing_sequence(matrices: Array, max_length: int) -> tuple[tuple[int, ...]
     return best
 
 
-def _beam(matrices: Array, max_length: int) -> Iterator[tuple[list[tuple[int, ...]], Array]]:
+def _beam(
+    matrices: Array, lyapunov: Array, max_length: int
+) -> Iterator[tuple[list[tuple[int, ...]], Array]]:
     """For each length the sequences kept, with the products of their matrices, last one leftmost.
 
     Kept are the largest products; how large is measured in the norm of the best Lyapunov function
     for the set, which treats all directions of the error alike.
     """
-    _, p = _best_lyapunov(matrices)
-    root = np.linalg.cholesky(p).T
+    root = np.linalg.cholesky(lyapunov).T
     back = np.linalg.inv(root)
     orders: list[tuple[int, ...]] = [(k,) for k in range(len(matrices))]
     products = matrices

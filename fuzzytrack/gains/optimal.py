@@ -50,7 +50,7 @@ Cost = Callable[..., Any]
 def velocity_index(
     velocity: ArrayLike, dt: ArrayLike, sigma: ArrayLike, kappa: ArrayLike = 1.0
 ) -> Array:
-    """Index |v| T^1.5 / (√κ σ) of the cost J + κ σ² ρ² at constant velocity.
+    """Index abs(v) T^1.5 / (√κ σ) of the cost J + κ σ² ρ² at constant velocity.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def velocity_index(
 def acceleration_index(
     acceleration: ArrayLike, dt: ArrayLike, sigma: ArrayLike, kappa: ArrayLike = 1.0
 ) -> Array:
-    """Index |a| T^2.5 / (√κ σ) of the cost J + κ σ² ρ² at constant acceleration.
+    """Index abs(a) T^2.5 / (√κ σ) of the cost J + κ σ² ρ² at constant acceleration.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def steady_index(
     kappa: ArrayLike = 1.0,
     kappa_steady: ArrayLike = 1.0,
 ) -> Array:
-    """Index √κₛ |a| T² / (√κ σ) of the cost κₛ e² + κ σ² ρ², where e is the lag a T²/β.
+    """Index √κₛ abs(a) T² / (√κ σ) of the cost κₛ e² + κ σ² ρ², where e is the lag a T²/β.
 
     Parameters
     ----------

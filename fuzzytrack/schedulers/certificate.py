@@ -10,10 +10,11 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains import certificate
 from fuzzytrack.gains.certificate import (
     Certificate,
-    box_in_gains,
+    box,
     convex_hull,
     polygon_in_gains,
 )
+from fuzzytrack.gains.wdomain import bilinear
 
 __all__ = ["REACHES", "certify", "reachable_gains"]
 
@@ -47,8 +48,10 @@ def certify(
     ValueError
         If an argument is out of range.
     """
-    points = reachable_gains(gains, reach) if isinstance(gains, RuleBase) else gains
-    return certificate.certify(points, max_length)
+    if not isinstance(gains, RuleBase):
+        return certificate.certify(gains, max_length)
+    around, reached = _gains(gains, reach)
+    return certificate.certify(around, max_length, reached=reached)
 
 
 def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
@@ -75,6 +78,11 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
     ValueError
         If `reach` is unknown.
     """
+    return _gains(rules, reach)[0]
+
+
+def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
+    """Gains round what a rule base can reach, and gains that it does reach."""
     if reach not in REACHES:
         raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
     names = sorted(rules.output_names, reverse="stiffness" in rules.output_names)
@@ -86,11 +94,16 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
     w_domain = "stiffness" in names
     if reach == "rules":
         points = _rule_conclusions(rules, names)
-        return polygon_in_gains(convex_hull(points)) if w_domain else points
+        if not w_domain:
+            return points, points
+        around, _ = polygon_in_gains(convex_hull(points))
+        # A rule that fires alone concludes a corner; what lies between two may need both.
+        return around, np.stack(bilinear(points[:, 0], points[:, 1]), axis=1)
     first, second = ((u.low, u.high) for u in (rules.output(name).universe for name in names))
     if w_domain:
-        return box_in_gains(first, second)
-    return np.array([[alpha, beta] for alpha in first for beta in second])
+        return polygon_in_gains(box(first, second))
+    corners = np.array([[alpha, beta] for alpha in first for beta in second])
+    return corners, corners
 
 
 def _rule_conclusions(rules: RuleBase, names: list[str]) -> Array:

@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 import fuzzytrack as ft
 from fuzzytrack.gains import alpha_beta_from_w
 from fuzzytrack.gains.certificate import (
-    box_in_gains,
+    box,
     certify,
+    certify_region,
     convex_hull,
     error_matrix,
     polygon_in_gains,
@@ -31,7 +32,7 @@ def simulate(matrices, rng, runs, steps):
 
 
 def test_the_published_limits_are_certified():
-    found = certify(box_in_gains(*PUBLISHED))
+    found = certify_region(box(*PUBLISHED))
     assert found.verdict == "certified"
     assert found.rate == pytest.approx(0.815936, abs=1e-6)
     np.testing.assert_allclose(found.lyapunov, [[1, -1.449921], [-1.449921, 4.374020]], rtol=2e-4)
@@ -39,7 +40,7 @@ def test_the_published_limits_are_certified():
 
 
 def test_the_wide_limits_are_refuted_by_a_sequence():
-    found = certify(box_in_gains(*WIDE))
+    found = certify_region(box(*WIDE))
     assert found.verdict == "refuted"
     assert found.rate == pytest.approx(1.516598, abs=1e-6)
     assert found.growth == pytest.approx(1.355826, abs=1e-6)
@@ -53,7 +54,7 @@ def test_growth_of_the_known_sequence(zeta, growth):
     for omega0 in (0.2, 0.2, 0.2, 0.8):
         product = error_matrix(*alpha_beta_from_w(omega0, zeta)) @ product
     assert np.abs(np.linalg.eigvals(product)).max() ** 0.25 == pytest.approx(growth, abs=1e-6)
-    found = certify(box_in_gains((0.2, 0.8), (zeta, 1.3)))
+    found = certify_region(box((0.2, 0.8), (zeta, 1.3)))
     if growth > 1:
         assert found.verdict == "refuted"
         assert found.growth >= growth - 1e-6
@@ -62,9 +63,9 @@ def test_growth_of_the_known_sequence(zeta, growth):
 
 
 def test_damping_from_0_76_makes_the_wide_stiffness_safe():
-    assert certify(box_in_gains((0.2, 0.8), (0.76, 1.3))).verdict == "certified"
+    assert certify_region(box((0.2, 0.8), (0.76, 1.3))).verdict == "certified"
     # Necessary is a damping above (w2 - w1)/(2 √(w1 w2)) = 0.75
-    assert certify(box_in_gains((0.2, 0.8), (0.74, 1.3))).verdict != "certified"
+    assert certify_region(box((0.2, 0.8), (0.74, 1.3))).verdict != "certified"
 
 
 def test_the_error_matrix_is_that_of_the_tracker():
@@ -84,10 +85,12 @@ def test_the_error_matrix_is_that_of_the_tracker():
 @given(st.floats(0.05, 2), st.floats(1.01, 4), st.floats(0.05, 2), st.floats(0.0, 1.0))
 @settings(max_examples=40)
 def test_the_image_of_a_box_lies_in_the_hull(w1, ratio, z1, width):
-    box = (w1, w1 * ratio), (z1, z1 + width)
-    hull = convex_hull(box_in_gains(*box, pieces=3))
+    limits = (w1, w1 * ratio), (z1, z1 + width)
+    around, reached = polygon_in_gains(box(*limits), pieces=3)
+    hull = convex_hull(around)
     rng = np.random.default_rng(1)
-    inside = np.array(alpha_beta_from_w(rng.uniform(*box[0], 200), rng.uniform(*box[1], 200))).T
+    omega0, zeta = rng.uniform(*limits[0], 200), rng.uniform(*limits[1], 200)
+    inside = np.concatenate([np.array(alpha_beta_from_w(omega0, zeta)).T, reached])
     if len(hull) == 2:
         return
     following = np.roll(hull, -1, axis=0)
@@ -97,7 +100,7 @@ def test_the_image_of_a_box_lies_in_the_hull(w1, ratio, z1, width):
 
 
 def test_a_certified_matrix_contracts_every_gain_inside():
-    found = certify(box_in_gains(*PUBLISHED))
+    found = certify_region(box(*PUBLISHED))
     rng = np.random.default_rng(2)
     alpha, beta = alpha_beta_from_w(rng.uniform(0.25, 0.35, 500), rng.uniform(0.54, 0.89, 500))
     f, p = error_matrix(alpha, beta), found.lyapunov
@@ -111,9 +114,8 @@ def check_random_boxes(boxes, runs, steps, seed=3):
     verdicts = []
     for _ in range(boxes):
         w1, z1 = rng.uniform(0.05, 1.0), rng.uniform(0.1, 1.0)
-        found = certify(
-            box_in_gains((w1, w1 * rng.uniform(1, 4)), (z1, z1 * rng.uniform(1, 3)), pieces=4),
-            max_length=4,
+        found = certify_region(
+            box((w1, w1 * rng.uniform(1, 4)), (z1, z1 * rng.uniform(1, 3))), max_length=4
         )
         verdicts.append(found.verdict)
         if found.verdict == "certified":
@@ -131,8 +133,20 @@ def test_no_certified_box_diverges():
     assert verdicts.count("refuted") > 0
 
 
+@pytest.mark.parametrize("limits", [WIDE, ((0.2, 0.8), (0.3, 1.3)), ((0.1, 1.5), (0.2, 0.9))])
+def test_a_refuting_sequence_stays_inside_the_box(limits):
+    found = certify_region(box(*limits))
+    assert found.verdict == "refuted"
+    for alpha, beta in found.sequence:
+        # The w-domain by hand: at zero damping the gains lie on the edge of stability.
+        u = 4 - 2 * alpha - beta
+        omega0, zeta = np.sqrt(beta / u), alpha / np.sqrt(beta * u)
+        assert limits[0][0] - 1e-9 <= omega0 <= limits[0][1] + 1e-9
+        assert limits[1][0] - 1e-9 <= zeta <= limits[1][1] + 1e-9
+
+
 def test_a_refuting_sequence_really_diverges():
-    found = certify(box_in_gains(*WIDE))
+    found = certify_region(box(*WIDE))
     error = np.array([1.0, 0.3])
     for k in range(400):
         error = error_matrix(*found.sequence[k % len(found.sequence)]) @ error
@@ -153,8 +167,7 @@ def test_unstable_gains_refute_themselves():
 
 
 def test_polygons_of_no_area():
-    line = polygon_in_gains([(0.3, 0.5), (0.3, 0.9)])
-    assert certify(line).verdict == "certified"
+    assert certify_region([(0.3, 0.5), (0.3, 0.9)]).verdict == "certified"
     assert len(convex_hull(np.array([[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]))) == 2
 
 
@@ -175,6 +188,6 @@ def test_bad_arguments():
     with pytest.raises(ValueError, match="max_length must be at least 1, got 0"):
         certify([[0.5, 0.2]], max_length=0)
     with pytest.raises(ValueError, match="stiffness must be 0 < low <= high"):
-        box_in_gains((0.0, 0.3), (0.5, 0.9))
+        box((0.0, 0.3), (0.5, 0.9))
     with pytest.raises(ValueError, match="damping must be 0 <= low <= high"):
-        box_in_gains((0.2, 0.3), (0.9, 0.5))
+        box((0.2, 0.3), (0.9, 0.5))
