@@ -32,11 +32,14 @@ class GainScheduler(ABC):
         Whether the kernel sees all axes of a track at once and gives them one set of gains.
     needs_sigma : bool
         Whether the kernel reads the standard deviation of the plot.
+    sees_every_step : bool
+        Whether the kernel also follows the steps of a track that need no gains; see `kernel`.
     """
 
     source: ClassVar[str] = ""
     coupled: bool = False
     needs_sigma: bool = False
+    sees_every_step: bool = False
 
     @abstractmethod
     def kernel(self, n_axes: int) -> Kernel:
@@ -57,7 +60,14 @@ class GainScheduler(ABC):
 
         Where a plot is missing, or a two-point start still waits for the second one, the function
         is called with zeros (and a sigma of 1) and its answer is dropped; so NaN never arrives as
-        an innovation. It runs in plain Python and is compiled by Numba, so it may use numbers,
+        an innovation.
+
+        A scheduler that sets `sees_every_step` keeps its memory also at those steps, from the first
+        plot of a track on; the gains are still dropped. Its kernel gets an innovation and a change
+        of 0, and as sigma that of the plot at the start of a track (the first plot with a ``dt`` of
+        no meaning), but infinity where a plot is missing.
+
+        It runs in plain Python and is compiled by Numba, so it may use numbers,
         tuples, `math`, other such functions, and constants of the enclosing scope; not the
         scheduler itself. It must guard its own divisions.
 

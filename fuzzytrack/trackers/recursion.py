@@ -111,6 +111,8 @@ def step_function(
     prediction_row, innovation_row, gains_row = rows.predicted, rows.innovation, rows.gains
     plot_row, sigma_row, change_row, dt_row = rows.plot, rows.sigma, rows.change, rows.dt
     first_count = 1.0 if two_point else 2.0
+    every_step = scheduler.sees_every_step
+    missed_sigma = math.inf if every_step else 1.0
 
     def step(b: Any) -> None:
         for i in range(block):
@@ -125,6 +127,9 @@ def step_function(
                 seen = seen & (z == z)
             running = plots >= 2.0
             update = seen & running
+            # A plot that the kernel is told of, and a step after which its memory is kept.
+            told = update | (seen & every_step)
+            kept = told | ((plots > 0.0) & every_step)
 
             for j in range(n_axes):
                 x = b[(x_row + j) * block + i]
@@ -138,7 +143,7 @@ def step_function(
                 change = z - b[(last_row + j) * block + i]
                 b[(change_row + j) * block + i] = change if update else 0.0
                 sigma = b[(sigma_row + j) * block + i]
-                b[(sigma_row + j) * block + i] = sigma if update else 1.0
+                b[(sigma_row + j) * block + i] = sigma if told else missed_sigma
 
             memory = remembered(b, memory_row * block + i)
             alpha, beta, gamma, phi, memory = call(
@@ -165,7 +170,7 @@ def step_function(
                 b[(prediction_row + j) * block + i] = prediction if running else nan
                 b[(innovation_row + j) * block + i] = e if update else nan
 
-            remember(b, memory_row * block + i, memory, update)
+            remember(b, memory_row * block + i, memory, kept)
             counted = plots + 1.0 if plots > 0.0 else first_count
             counted = counted if counted < 2.0 else 2.0
             b[plots_row * block + i] = counted if seen else plots

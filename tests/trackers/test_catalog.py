@@ -73,7 +73,7 @@ def test_values_follow_the_annotations():
         ("fixed:alpha=a:beta=.2", "alpha must be a number, got 'a'"),
         ("fixed:alpha=1:alpha=1", "parameter 'alpha' is given twice"),
         ("fixed:.5:beta=.2", "'.5' is no parameter; write parameters as name=value"),
-        ("fixed:alpha=3:beta=1", "tracker 'fixed:alpha=3:beta=1': alpha, beta must lie"),
+        ("fixed:alpha=3:beta=1", "tracker 'fixed:alpha=3:beta=1': alpha, beta must keep"),
         ("chan-style:start=q", "start: unknown 'q'"),
         ("chan-style:method=q", "unknown 'q'"),
         ("chan-style:metod=table", "did you mean 'method'"),

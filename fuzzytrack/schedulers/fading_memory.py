@@ -1,0 +1,86 @@
+"""Gains of fading memory, from the one number ξ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from fuzzytrack.gains import convert_gamma, design
+from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
+
+__all__ = ["FadingMemory"]
+
+CONVENTIONS = ("mahafza", "njonjo")
+
+
+@schedulers.register("fading-memory")
+@dataclass(frozen=True)
+class FadingMemory(GainScheduler):
+    """Fixed gains of the α-β-γ filter that forgets old plots by a factor of ξ a step.
+
+    α = 1 - ξ³, β = 3(1 - ξ)²(1 + ξ)/2 and γ = (1 - ξ)³, or of order 2 α = 1 - ξ² and β = (1 - ξ)².
+
+    Parameters
+    ----------
+    xi : float
+        Damping parameter, 0 <= ξ < 1: 0 follows the last plots, towards 1 it smooths more.
+    convention : {"mahafza", "njonjo"}
+        What γ = (1 - ξ)³ means. ``mahafza``: acceleration gain γ/T², the least-squares filter with
+        all poles at ξ. ``njonjo``: acceleration gain 2γ/T², as Njonjo et al. print it; it is
+        stable, but not critically damped.
+    order : {2, 3}
+        2: α-β. 3: α-β-γ.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range or unknown.
+
+    Notes
+    -----
+    Njonjo et al. (2017), Eqs. 4 to 9, with ξ = 0.64 for their warship; see
+    `fuzzytrack.gains.fading_memory`.
+
+    Examples
+    --------
+    >>> from fuzzytrack.schedulers.fading_memory import FadingMemory
+    >>> print("{:.6f} {:.6f} {:.6f}".format(*FadingMemory(0.64, "njonjo").gains))
+    0.737856 0.318816 0.186624
+    """
+
+    source: ClassVar[str] = "Njonjo et al. (2017), Eqs. 7-9"
+
+    xi: float
+    convention: str = "mahafza"
+    order: int = 3
+
+    def __post_init__(self) -> None:
+        if self.convention not in CONVENTIONS:
+            raise ValueError(
+                f"convention must be one of {', '.join(CONVENTIONS)}, got {self.convention!r}"
+            )
+        if self.order not in (2, 3):
+            raise ValueError(f"order must be 2 or 3, got {self.order!r}")
+        design.fading_memory(self.xi)
+        object.__setattr__(self, "xi", float(self.xi))
+
+    @property
+    def gains(self) -> tuple[float, float, float]:
+        """α, β, γ, the last in the convention of acceleration gain γ/(2T²)."""
+        if self.order == 2:
+            alpha, beta = map(float, design.fading_memory(self.xi))
+            return alpha, beta, 0.0
+        alpha, beta, gamma = map(float, design.fading_memory(self.xi, 3))
+        printed = float(convert_gamma(gamma, "llinas", "mahafza"))
+        return alpha, beta, float(convert_gamma(printed, self.convention, "llinas"))
+
+    def kernel(self, n_axes: int) -> Kernel:
+        """Constant gains; see `GainScheduler.kernel`."""
+        alpha, beta, gamma = self.gains
+
+        def fading_memory(
+            innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
+        ) -> tuple[float, float, float, float, Memory]:
+            return alpha, beta, gamma, 1.0, memory
+
+        return fading_memory
