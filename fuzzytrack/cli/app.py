@@ -7,10 +7,11 @@ from typing import Annotated
 import typer
 
 from fuzzytrack import __version__
+from fuzzytrack.cli.certifying import certify
 from fuzzytrack.cli.comparing import compare
 from fuzzytrack.cli.demonstration import demo
 from fuzzytrack.cli.errors import Commands
-from fuzzytrack.cli.gains import certify, design, gains
+from fuzzytrack.cli.gains import design, gains
 from fuzzytrack.cli.listing import trackers
 from fuzzytrack.cli.output import say
 from fuzzytrack.cli.rulebases import rulebase

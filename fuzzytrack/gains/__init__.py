@@ -1,7 +1,9 @@
 """Theory of gains: pure functions over broadcasting arrays; they know nothing of fuzzy sets."""
 
 from fuzzytrack.gains.abc_space import abc_preimages, from_abc, to_abc
+from fuzzytrack.gains.circle import CircleOptimum, optimal_on_circle
 from fuzzytrack.gains.conventions import GAMMA_CONVENTIONS, convert_gamma
+from fuzzytrack.gains.cost import Optimum, TrackingCost
 from fuzzytrack.gains.design import (
     benedict_bordner,
     critically_damped,
@@ -12,16 +14,11 @@ from fuzzytrack.gains.design import (
     tracking_index,
 )
 from fuzzytrack.gains.optimal import (
-    CircleOptimum,
-    Optimum,
-    TrackingCost,
     acceleration_index,
     optimal_alpha_beta_gamma,
     optimal_for_acceleration,
     optimal_for_steady_error,
     optimal_for_velocity,
-    optimal_gains,
-    optimal_on_circle,
     steady_index,
     velocity_index,
 )
@@ -34,6 +31,7 @@ from fuzzytrack.gains.performance import (
     steady_error,
     transient_cost,
 )
+from fuzzytrack.gains.search import optimal_gains
 from fuzzytrack.gains.stability import Region, eigenfrequency, is_stable, jury, poles, region
 from fuzzytrack.gains.systems import transfer_function
 from fuzzytrack.gains.wdomain import (

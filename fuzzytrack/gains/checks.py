@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["finite", "inside", "nonnegative", "positive", "stable_gains", "within"]
+__all__ = ["finite", "inside", "nonnegative", "number", "positive", "stable_gains", "within"]
 
 Floats = NDArray[np.float64]
 
@@ -83,3 +83,10 @@ def _all(name: str, array: Floats, good: NDArray[np.bool_], range_: str) -> Floa
 
 def _index(at: tuple[np.intp, ...]) -> str:
     return str(tuple(map(int, at)) if len(at) > 1 else int(at[0]))
+
+
+def number(name: str, array: Floats) -> float:
+    """One number out of an array of no axes, or a ValueError that names it."""
+    if array.ndim:
+        raise ValueError(f"{name} must be one number, got an array of shape {array.shape}")
+    return float(array)

@@ -7,18 +7,11 @@ A figure that a function makes belongs to pyplot, as with other libraries, and i
 ``matplotlib.figure.Figure``.
 """
 
+from fuzzytrack.plotting.circle import plot_circle_cost, plot_circle_gains
 from fuzzytrack.plotting.gain_plane import plot_gain_plane
 from fuzzytrack.plotting.memberships import plot_memberships
-from fuzzytrack.plotting.performance import (
-    plot_circle_cost,
-    plot_circle_gains,
-    plot_motion_gains,
-    plot_noise_against_lag,
-    plot_noise_ratio,
-    plot_noise_surfaces,
-    plot_optimal_curves,
-    plot_optimal_gains,
-)
+from fuzzytrack.plotting.noise import plot_noise_against_lag, plot_noise_ratio, plot_noise_surfaces
+from fuzzytrack.plotting.optimum import plot_motion_gains, plot_optimal_curves, plot_optimal_gains
 from fuzzytrack.plotting.stability import plot_stability_regions, plot_stability_volume
 from fuzzytrack.plotting.surfaces import plot_gain_surfaces, plot_relation, plot_surface
 from fuzzytrack.plotting.tracks import plot_errors, plot_track

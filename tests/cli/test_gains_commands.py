@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import load_rulebase
-from fuzzytrack.cli.gains import card
+from fuzzytrack.cli.gain_card import card
 from fuzzytrack.gains.certificate import error_matrix
 from fuzzytrack.schedulers.certificate import reachable_gains
 

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from fuzzytrack.gains import Region, from_abc, is_stable, noise_ratio, poles, region
 from fuzzytrack.plotting import plot_noise_surfaces, plot_stability_regions, plot_stability_volume
-from fuzzytrack.plotting.performance import _noise_surface
+from fuzzytrack.plotting.noise import _noise_surface
 from fuzzytrack.plotting.stability import _surfaces
 
 VOLUMES = [(s, what) for s in ("gains", "abc") for what in ("bounds", "critical", "dividing")]
