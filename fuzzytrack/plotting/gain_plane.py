@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.gains.stability import critical_curves
 from fuzzytrack.gains.wdomain import alpha_beta_from_w
 from fuzzytrack.plotting import _figures as shared
 from fuzzytrack.trackers.result import TrackResult
@@ -165,8 +166,7 @@ def _references(ax: Axes, labels: bool = True) -> None:
         zorder=1,
     )
     alpha = 1.0 - np.linspace(1.0, 0.0, 201) ** 2
-    root = 2.0 * np.sqrt(1.0 - alpha)
-    lower, upper = 2.0 - alpha - root, 2.0 - alpha + root
+    lower, upper = critical_curves(alpha)
     ax.plot(
         np.concatenate([alpha, alpha[::-1]]),
         np.concatenate([lower, upper[::-1]]),
@@ -176,7 +176,7 @@ def _references(ax: Axes, labels: bool = True) -> None:
         label=named("critical damping"),
         zorder=1,
     )
-    # It leaves the triangle at 4 - 2√2.
+    # It leaves the triangle at 4 - 2√2; its ends, not stable themselves, are drawn.
     alpha = np.linspace(0.0, 4.0 - 2.0 * np.sqrt(2.0), 201)
     ax.plot(
         alpha,

@@ -54,8 +54,9 @@ class KalmanCV(GainScheduler):
 
     Notes
     -----
-    Llinas et al. (1998), section 5.1.4, per-scan variance of the measurement. At constant T and
-    noise the gains settle at those of `fuzzytrack.gains.kalata` with λ = σ_v T²/σ_w. Joseph form.
+    Llinas et al. (1998), section 5.2, tracker 5, with the variance of each scan (section 4.1.2).
+    At constant T and noise the gains settle at those of `fuzzytrack.gains.kalata` with
+    λ = σ_v T²/σ_w. Joseph form.
     The memory is (phase, P₁₁, P₁₂, P₂₂, time since the first plot (s)), with P the covariance of
     the filtered position and velocity, and a phase of 0 before the first plot, 1 while velocity is
     unknown (P is then what is known apart from it) and 2 from then on.
