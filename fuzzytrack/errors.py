@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["DataError", "Location", "NoRuleFiresWarning", "PluginWarning", "RuleBaseError", "Word"]
+__all__ = [
+    "DataError",
+    "FileError",
+    "Location",
+    "NoRuleFiresWarning",
+    "PluginWarning",
+    "RuleBaseError",
+    "ScenarioError",
+    "Word",
+]
 
 
 @dataclass(frozen=True)
@@ -39,15 +48,15 @@ class Word(str):
         return word
 
 
-class RuleBaseError(ValueError):
-    """A rule base that cannot be used; says where it is wrong and what was allowed.
+class FileError(ValueError):
+    """Something a user wrote that cannot be used; says where it is wrong and what was allowed.
 
     Parameters
     ----------
     message : str
         What is wrong, with the offending word and the allowed ones.
     location : Location or None
-        Place in the file; None for a rule base built in Python.
+        Place in the file; None for what was built in Python.
     """
 
     def __init__(self, message: str, location: Location | None = None) -> None:
@@ -55,8 +64,16 @@ class RuleBaseError(ValueError):
         self.message = message
         self.location = location
 
-    def __reduce__(self) -> tuple[type[RuleBaseError], tuple[str, Location | None]]:
+    def __reduce__(self) -> tuple[type[FileError], tuple[str, Location | None]]:
         return type(self), (self.message, self.location)
+
+
+class RuleBaseError(FileError):
+    """A rule base that cannot be used."""
+
+
+class ScenarioError(FileError):
+    """A scenario of a simulation that cannot be used."""
 
 
 class DataError(ValueError):

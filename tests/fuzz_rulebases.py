@@ -18,8 +18,8 @@ from dataclasses import dataclass, field
 
 import yaml
 
+from fuzzytrack import yamltree
 from fuzzytrack.errors import RuleBaseError
-from fuzzytrack.fuzzy import yamltree
 from fuzzytrack.fuzzy.loading import loads_rulebase, rulebase_path, shipped_rulebases
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 

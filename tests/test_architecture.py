@@ -10,7 +10,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "fuzzytrack"
 # From the bottom up; what shares a row does not know each other. See docs/architecture.md.
 LAYERS = [
     {"errors"},
-    {"plugins"},
+    {"plugins", "yamltree"},
     {"gains", "fuzzy"},
     {"schedulers"},
     {"trackers"},

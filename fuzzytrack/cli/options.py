@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fuzzytrack.fuzzy.yamltree import suggestion
+from fuzzytrack.yamltree import suggestion
 
 __all__ = ["Axes", "Id", "Json", "Plots", "Seed", "Sort", "Time", "names", "numbers_at", "pairs"]
 

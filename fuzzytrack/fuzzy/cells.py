@@ -6,11 +6,11 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping
 
-from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.errors import FileError
 from fuzzytrack.fuzzy.rulebase import Consequent
 from fuzzytrack.fuzzy.variable import Variable
-from fuzzytrack.fuzzy.yamltree import Document, Node, Sequence, quoted
-from fuzzytrack.fuzzy.yamltree import Mapping as MappingNode
+from fuzzytrack.yamltree import Document, Node, Sequence, quoted
+from fuzzytrack.yamltree import Mapping as MappingNode
 
 __all__ = ["CellReader"]
 
@@ -104,7 +104,7 @@ class CellReader:
 
     def _unreadable(
         self, node: Node, body: str, parts: list[str], variables: list[Variable]
-    ) -> RuleBaseError:
+    ) -> FileError:
         if len(variables) == 1:
             (variable,) = variables
             role = f"set of {variable.name}"

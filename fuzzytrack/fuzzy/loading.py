@@ -8,7 +8,7 @@ from pathlib import Path
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.reader import Reader
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.yamltree import MAX_BYTES, Document, quoted, suggestion
+from fuzzytrack.yamltree import MAX_BYTES, Document, quoted, suggestion
 
 __all__ = ["load_rulebase", "loads_rulebase", "rulebase_path", "shipped_rulebases"]
 

@@ -21,8 +21,8 @@ from fuzzytrack.fuzzy.rulebase import (
     TableLayout,
 )
 from fuzzytrack.fuzzy.variable import GRIDS, Universe, Variable
-from fuzzytrack.fuzzy.yamltree import Document, Node, Scalar, Sequence, quoted
-from fuzzytrack.fuzzy.yamltree import Mapping as MappingNode
+from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted
+from fuzzytrack.yamltree import Mapping as MappingNode
 
 __all__ = [
     "FORMAT_VERSION",

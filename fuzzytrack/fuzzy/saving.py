@@ -18,8 +18,8 @@ from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.reader import FORMAT_VERSION, Reader
 from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.variable import Universe, Variable
-from fuzzytrack.fuzzy.yamltree import Document, Node, quoted
-from fuzzytrack.fuzzy.yamltree import Mapping as MappingNode
+from fuzzytrack.yamltree import Document, Node, quoted
+from fuzzytrack.yamltree import Mapping as MappingNode
 
 __all__ = ["dumps_rulebase", "save_rulebase", "set_cell"]
 

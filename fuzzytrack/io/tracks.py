@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.fuzzy.yamltree import suggestion
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.tables import Kind, Progress, Table, Words, read_table, write_table
 from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.yamltree import suggestion
 
 __all__ = ["Recording", "Track", "read_tracks", "write_tracks"]
 

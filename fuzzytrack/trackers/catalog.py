@@ -14,10 +14,10 @@ from typing import Any
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.yamltree import suggestion
 from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, normalizations, schedulers
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
+from fuzzytrack.yamltree import suggestion
 
 __all__ = ["CatalogEntry", "catalog", "make_tracker"]
 

@@ -14,8 +14,9 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fuzzytrack import yamltree
 from fuzzytrack.errors import Location, RuleBaseError, Word
-from fuzzytrack.fuzzy import loading, yamltree
+from fuzzytrack.fuzzy import loading
 from fuzzytrack.fuzzy.loading import (
     load_rulebase,
     loads_rulebase,

@@ -17,7 +17,7 @@ from typing import Any
 
 import yaml
 
-from fuzzytrack.errors import Location, RuleBaseError
+from fuzzytrack.errors import FileError, Location, RuleBaseError
 
 __all__ = [
     "MAX_BYTES",
@@ -151,24 +151,34 @@ class Document:
         Name for messages.
     loader : type, optional
         A PyYAML loader class; libyaml's when it is there.
+    failure : type
+        The error to raise, after what the file is meant to be.
 
     Raises
     ------
-    RuleBaseError
-        If the text is no YAML, or more than one document, or uses tags, merge keys, doubled keys
-        or control characters, or exceeds 128 KiB, 12 levels or 10,000 nodes.
+    FileError
+        Of the type `failure`, if the text is no YAML, or more than one document, or uses tags,
+        merge keys, doubled keys or control characters, or exceeds 128 KiB, 12 levels or 10,000
+        nodes.
     """
 
-    def __init__(self, text: str | bytes, file: str, loader: type[Any] | None = None) -> None:
+    def __init__(
+        self,
+        text: str | bytes,
+        file: str,
+        loader: type[Any] | None = None,
+        failure: type[FileError] = RuleBaseError,
+    ) -> None:
         self.file = file
-        self.root = _Builder(file).build(self._checked(text), loader or _LOADER)
+        self.failure = failure
+        self.root = _Builder(file, failure).build(self._checked(text), loader or _LOADER)
 
     # ------------------------------------------------------------ complaints
 
-    def error(self, node: Node, message: str, offset: int = 0) -> RuleBaseError:
+    def error(self, node: Node, message: str, offset: int = 0) -> FileError:
         """Complain of a node, or about the word `offset` characters into a plain one."""
         inside = offset if isinstance(node, Scalar) and node.plain else 0
-        return RuleBaseError(message, self.location(node, inside))
+        return self.failure(message, self.location(node, inside))
 
     def location(self, node: Node, offset: int = 0) -> Location:
         """Place of a node, or of the word `offset` characters into it."""
@@ -176,7 +186,7 @@ class Document:
 
     def unknown(
         self, node: Node, word: str, role: str, allowed: Collection[str], offset: int = 0
-    ) -> RuleBaseError:
+    ) -> FileError:
         """Complain of an unknown word, with the allowed ones."""
         message = f"unknown {role} {quoted(word)}{suggestion(word, allowed)}"
         return self.error(node, message, offset)
@@ -186,7 +196,7 @@ class Document:
         """Give complaints of the model, which knows no files, the place of `node`."""
         try:
             yield
-        except RuleBaseError as error:
+        except FileError as error:
             if error.location is not None:
                 raise
             raise self.error(node, error.message) from None
@@ -275,10 +285,10 @@ class Document:
             message = f"byte 0x{raw[error.start]:02x} is not valid UTF-8"
             raise self._at_offset(before, len(before), message) from None
 
-    def _at_offset(self, text: str, offset: int, message: str) -> RuleBaseError:
+    def _at_offset(self, text: str, offset: int, message: str) -> FileError:
         before = text[:offset]
         column = offset - (before.rfind("\n") + 1) + 1
-        return RuleBaseError(message, Location(self.file, before.count("\n") + 1, column))
+        return self.failure(message, Location(self.file, before.count("\n") + 1, column))
 
 
 def _what(node: Node) -> str:
@@ -300,8 +310,9 @@ class _Frame:
 class _Builder:
     """Builds the tree from PyYAML's events, with an explicit stack."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, failure: type[FileError]) -> None:
         self.file = file
+        self.failure = failure
         self.stack: list[_Frame] = []
         self.anchors: dict[str, Node | None] = {}
         self.count = 0
@@ -310,15 +321,15 @@ class _Builder:
     def build(self, text: str, loader: type[Any]) -> Node:
         try:
             self._read(loader(text))
-        except RuleBaseError:
+        except FileError:
             raise  # it is a ValueError too
         except yaml.YAMLError as error:
             raise self._syntax(error) from None
         except (ValueError, OverflowError) as error:
             # PyYAML's own parser on escapes such as "\\UFFFFFFFF".
-            raise RuleBaseError(f"not YAML: {error}", Location(self.file, 1, 1)) from None
+            raise self.failure(f"not YAML: {error}", Location(self.file, 1, 1)) from None
         if self.root is None:
-            raise RuleBaseError("the text is empty", Location(self.file, 1, 1))
+            raise self.failure("the text is empty", Location(self.file, 1, 1))
         return self.root
 
     def _read(self, parser: Any) -> None:
@@ -331,12 +342,12 @@ class _Builder:
         finally:
             parser.dispose()
 
-    def _syntax(self, error: yaml.YAMLError) -> RuleBaseError:
+    def _syntax(self, error: yaml.YAMLError) -> FileError:
         mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
         parts = (getattr(error, "context", None), getattr(error, "problem", None))
         problem = ", ".join(part for part in parts if part) or "a character that is not allowed"
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        return RuleBaseError(f"not YAML: {problem}", Location(self.file, line, column))
+        return self.failure(f"not YAML: {problem}", Location(self.file, line, column))
 
     def _take(self, event: Any) -> None:
         kind = type(event)
@@ -352,9 +363,9 @@ class _Builder:
         elif kind is yaml.DocumentStartEvent and self.root is not None:
             raise self._error(event, "a second document; only one is allowed")
 
-    def _error(self, event: Any, message: str) -> RuleBaseError:
+    def _error(self, event: Any, message: str) -> FileError:
         mark = event.start_mark
-        return RuleBaseError(message, Location(self.file, mark.line + 1, mark.column + 1))
+        return self.failure(message, Location(self.file, mark.line + 1, mark.column + 1))
 
     def _check_node(self, event: Any) -> None:
         if event.tag is not None:
