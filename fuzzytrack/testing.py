@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.lanes import LaneTracker, runner
 from fuzzytrack.trackers.result import TrackResult
-from fuzzytrack.trackers.runner import runner
 from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["check_scheduler", "check_tracker"]
@@ -32,9 +32,8 @@ def check_scheduler(scheduler: GainScheduler, seed: int = 0) -> None:
     """Check that a scheduler keeps the contract of `fuzzytrack.schedulers.base.GainScheduler`.
 
     Checked are: immutability (equal hash and answers after pickling), memory and gains of the
-    right form at ordinary and extreme innovations, that the compiled kernel equals plain Python to
-    the last bit, and, through an `fuzzytrack.AlphaBetaTracker` with either start, all that
-    `check_tracker` checks.
+    right form at ordinary and extreme innovations, and, through an `fuzzytrack.AlphaBetaTracker`
+    with either start, all that `check_tracker` checks.
 
     Parameters
     ----------
@@ -58,7 +57,6 @@ def check_scheduler(scheduler: GainScheduler, seed: int = 0) -> None:
     n_axes = _AXES if scheduler.coupled else 1
     _check_kernel(scheduler, n_axes)
     for start in STARTS:
-        _check_compiled(scheduler, n_axes, start == "two-point", seed)
         check_tracker(AlphaBetaTracker(scheduler, start), seed)
         _check_same_run(AlphaBetaTracker(scheduler, start), AlphaBetaTracker(copy, start), seed)
 
@@ -68,8 +66,9 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
 
     Checked are: shapes of one track and of batches, coasting on missed plots, irregular times,
     that a batch equals its tracks one by one, that streaming equals `run` to the last bit, pickling
-    of the state in the middle of a track, determinism, that inputs are left alone, and that bad
-    input raises ValueError.
+    of the state in the middle of a track, determinism, that inputs are left alone, that bad input
+    raises ValueError, and of a `fuzzytrack.trackers.lanes.LaneTracker` that it gives the same to
+    the last bit when compiled.
 
     Parameters
     ----------
@@ -90,6 +89,8 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     _check_one_by_one(tracker, times, plots)
     _check_streaming(tracker, times, plots)
     _check_errors(tracker, times, plots[:, 0])
+    if isinstance(tracker, LaneTracker):
+        _check_compiled(tracker, times, plots)
 
 
 def _expect(holds: bool, promise: str) -> None:
@@ -244,17 +245,17 @@ def _check_kernel(scheduler: GainScheduler, n_axes: int) -> None:
             _expect(kernel(*arguments, memory) == answer, f"{where}: must depend on nothing else")
 
 
-def _check_compiled(scheduler: GainScheduler, n_axes: int, two_point: bool, seed: int) -> None:
-    times, plots = _plots(seed)
-    core = runner(scheduler, n_axes, two_point)
+def _check_compiled(tracker: LaneTracker, times: Array, plots: Array) -> None:
+    n_axes = _AXES if tracker.coupled else 1
+    core = runner(tracker, n_axes)
     lanes = plots.reshape(_STEPS, -1, n_axes)
     dts = np.diff(times, prepend=times[0])[:, None]
     sigmas = np.full((1, 1, 1), _SIGMA)
     fresh = core.fresh(lanes.shape[1])
     plain_state, plain = core(fresh, lanes, dts, sigmas, native=False)
     native_state, native = core(fresh, lanes, dts, sigmas, native=True)
-    _expect_same(plain, native, "the compiled kernel must equal plain Python to the last bit")
+    _expect_same(plain, native, "compiled code must equal plain Python to the last bit")
     _expect(
         np.array_equal(plain_state, native_state, equal_nan=True),
-        "the compiled kernel must leave the same state as plain Python",
+        "compiled code must leave the same state as plain Python",
     )

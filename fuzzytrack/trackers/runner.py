@@ -10,12 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.native import compiled
-from fuzzytrack.trackers.recursion import step_function
 from fuzzytrack.trackers.rows import Rows
 
-__all__ = ["Runner", "runner"]
+__all__ = ["Recursion", "Runner"]
 
 Array = NDArray[np.float64]
 
@@ -28,22 +26,46 @@ _GAINS = ("alpha", "beta", "gamma")
 
 
 @dataclass(frozen=True, eq=False)
+class Recursion:
+    """A tracker's arithmetic: what a lane remembers, and how it goes one step on.
+
+    Attributes
+    ----------
+    rows : Rows
+        Layout of a lane.
+    memory : tuple of float
+        Memory of a lane that has seen nothing, as long as `rows` says.
+    step : callable
+        Makes, for a number of lanes, the function that does one time step of them in place in their
+        buffer, in which row `r` of lane `i` is at ``r * lanes + i``. It finds plot, sigma and dt
+        filled in, and leaves state and results. It is run in plain Python over a list and compiled
+        over an array, so it has loops, selects and numbers in it, and calls nothing else.
+    """
+
+    rows: Rows
+    memory: tuple[float, ...]
+    step: Callable[[int], Callable[[Any], None]]
+
+
+@dataclass(frozen=True, eq=False)
 class Runner:
-    """Runs a scheduler's recursion over lanes; made by `runner`.
+    """Runs a recursion over lanes and time.
 
     Lanes are kept as an array of shape (rows.kept, lanes), see `fuzzytrack.trackers.rows.Rows`.
     """
 
-    scheduler: GainScheduler
-    rows: Rows
-    two_point: bool
-    memory: tuple[float, ...]
+    recursion: Recursion
+
+    @property
+    def rows(self) -> Rows:
+        """Layout of a lane."""
+        return self.recursion.rows
 
     def fresh(self, count: int) -> Array:
         """Lanes that have seen nothing, shape (rows.kept, count)."""
         lanes = np.zeros((self.rows.kept, count))
         lanes[: self.rows.velocity] = np.nan
-        lanes[self.rows.memory : self.rows.state] = np.reshape(self.memory, (-1, 1))
+        lanes[self.rows.memory : self.rows.state] = np.reshape(self.recursion.memory, (-1, 1))
         return lanes
 
     def __call__(
@@ -106,7 +128,7 @@ class Runner:
 
     @cached_property
     def _plain_step(self) -> Callable[[Any], None]:
-        return step_function(self.scheduler, self.rows, self.two_point, 1)
+        return self.recursion.step(1)
 
     def _run_plain(
         self, lanes: Array, plots: Array, dts: Array, sigmas: Array
@@ -116,7 +138,8 @@ class Runner:
         # What a step is given, in the order of the rows: plot, sigma, time step.
         all_dts = np.broadcast_to(dts[:, :, None], (n_steps, count, 1))
         given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
-        trace = np.empty((n_steps, count, rows.kept))
+        n_state = rows.last_plot
+        trace = np.empty((n_steps, count, n_state + rows.kept - rows.predicted))
         after = lanes.copy()
         for lane in range(count):
             b = lanes[:, lane].tolist() + [0.0] * (rows.total - rows.kept)
@@ -124,16 +147,19 @@ class Runner:
             for row in given[:, lane].tolist():
                 b[rows.plot : rows.change] = row
                 step(b)
-                history.append(b[: rows.kept])
+                history.append(b[:n_state] + b[rows.predicted : rows.kept])
             if history:
                 trace[:, lane] = history
-                after[:, lane] = history[-1]
-        outputs = {
-            name: trace[:, :, row : row + rows.n_axes].copy()
-            for name, row in self._positions.items()
-        }
-        gains = {name: trace[:, :, rows.gains + k].copy() for k, name in enumerate(_GAINS)}
-        return after, {**outputs, **gains}
+                after[:, lane] = b[: rows.kept]
+        # What lies between state and results is not in the trace.
+        skipped = rows.predicted - n_state
+        outputs = {}
+        for name, row in self._positions.items():
+            column = row if row < n_state else row - skipped
+            outputs[name] = trace[:, :, column : column + rows.n_axes].copy()
+        for k, name in enumerate(_GAINS):
+            outputs[name] = trace[:, :, rows.gains - skipped + k].copy()
+        return after, outputs
 
     @property
     def _positions(self) -> dict[str, int]:
@@ -169,7 +195,7 @@ class Runner:
     @cached_property
     def _compiled_run(self) -> Callable[..., None]:
         # Compiled one by one, lest they be inlined into each other at every use.
-        step = compiled(step_function(self.scheduler, self.rows, self.two_point, BLOCK))
+        step = compiled(self.recursion.step(BLOCK))
         copies = _compiled_once(_copy_in), _compiled_once(_copy_out)
         return compiled(_run_function(step, *copies, self.rows, BLOCK))
 
@@ -250,41 +276,3 @@ def _strides(shape: tuple[int, ...], full: tuple[int, ...]) -> tuple[int, ...]:
         strides.append(step if length > 1 else 0)
         step *= length
     return (*(0,) * (len(full) - len(shape)), *reversed(strides))
-
-
-@dataclass(frozen=True, eq=False)
-class _Identity:
-    """A scheduler as a key that is compared by identity; comparing rule bases takes longer."""
-
-    scheduler: GainScheduler
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Identity) and self.scheduler is other.scheduler
-
-    def __hash__(self) -> int:
-        return id(self.scheduler)
-
-
-def runner(scheduler: GainScheduler, n_axes: int, two_point: bool) -> Runner:
-    """Runner of a scheduler; equal schedulers share one, and what was compiled for it.
-
-    Parameters
-    ----------
-    scheduler : GainScheduler
-    n_axes : int
-        Axes of a lane: 1 unless the scheduler is coupled.
-    two_point : bool
-        Whether velocity starts from the first two plots, without asking the scheduler.
-    """
-    return _runner_of_this(_Identity(scheduler), n_axes, two_point)
-
-
-@lru_cache(maxsize=256)
-def _runner_of_this(key: _Identity, n_axes: int, two_point: bool) -> Runner:
-    return _runner_of_equal(key.scheduler, n_axes, two_point)
-
-
-@lru_cache(maxsize=64)
-def _runner_of_equal(scheduler: GainScheduler, n_axes: int, two_point: bool) -> Runner:
-    memory = tuple(float(m) for m in scheduler.initial_memory(n_axes))
-    return Runner(scheduler, Rows(n_axes, len(memory)), two_point, memory)

@@ -1,0 +1,283 @@
+"""Covariance of a track's errors, and how well its innovations agree with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzytrack.gains.checks import nonnegative, number, within
+from fuzzytrack.trackers.result import TrackResult
+
+__all__ = ["TrackCovariance", "track_covariance"]
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class TrackCovariance:
+    """Covariances of a track over time, each axis of space by itself.
+
+    The last two axes are those of (position, velocity), or with γ (position, velocity,
+    acceleration): variances in m², m²/s² and m²/s⁴.
+
+    Attributes
+    ----------
+    predicted, filtered : ndarray, shape (n_steps, ...batch, n_axes, n, n)
+        Covariance of the error before and after the plot is used; NaN until velocity is known.
+    innovation_variance : ndarray, shape (n_steps, ...batch, n_axes)
+        S (m²), shaped as the plots; NaN where there is no innovation or nothing is known of it.
+    nis : ndarray, shape (n_steps, ...batch)
+        Normalised innovation squared, the sum of e²/S over the axes that have one; NaN where none
+        has. If model and noise are right, its mean is `axes`. Plots of one axis without an axis of
+        space, shape (n_steps,), have it in that shape.
+    axes : ndarray of int, shape (n_steps, ...batch)
+        Degrees of freedom of `nis`: how many axes were summed.
+    """
+
+    predicted: Array
+    filtered: Array
+    innovation_variance: Array
+    nis: Array
+    axes: NDArray[np.int_]
+
+
+def track_covariance(
+    result: TrackResult,
+    sigma: ArrayLike,
+    sigma_v: float,
+    *,
+    velocity_sigma: float | None = None,
+    acceleration_sigma: float | None = None,
+) -> TrackCovariance:
+    """Exact covariance of what a tracker estimated, whatever gains it used.
+
+    Parameters
+    ----------
+    result : TrackResult
+        Whole tracks, from their first plots on.
+    sigma : array_like
+        Standard deviation of the plots (m), > 0, broadcast against them.
+    sigma_v : float
+        Standard deviation, >= 0, of the target's acceleration, drawn anew for each step (m/s²);
+        for a tracker with γ of the change of acceleration at each step.
+    velocity_sigma : float, optional
+        Standard deviation of a new track's velocity (m/s), >= 0. Needed after a one-point start,
+        unless the first correction replaces the velocity altogether; a two-point start makes no
+        use of it.
+    acceleration_sigma : float, optional
+        Standard deviation of a new track's acceleration (m/s²), >= 0. Needed by a tracker with γ;
+        given for one without, the target is modelled with acceleration all the same.
+
+    Returns
+    -------
+    TrackCovariance
+
+    Raises
+    ------
+    ValueError
+        If a standard deviation is out of its range, does not broadcast or is missing, the result
+        goes on from a state, or its states do not follow from its gains.
+
+    Notes
+    -----
+    The models are those of `fuzzytrack.schedulers.KalmanCV` and, with acceleration,
+    `fuzzytrack.schedulers.KalmanCA`: noise G Gᵀσ_v² a step, with G = (T²/2, T) or (T²/2, T, 1). The
+    update is the Joseph form P = (I - KH)P⁻(I - KH)ᵀ + K Kᵀσ², K = (α, β/T, γ/(2T²)), which holds
+    for any gains that do not depend on the noise; gains chosen by the innovations themselves make
+    it an approximation. A two-point start over a gap T₀ is the update with K = (1, 1/T₀, 0), from
+    which the unknown velocity drops out: P₂₂ is then (σ₁² + σ₂²)/T₀² + σ_v²T₀²/4 after a single
+    step.
+
+    Examples
+    --------
+    >>> from fuzzytrack import AlphaBetaTracker, FixedGains
+    >>> from fuzzytrack.trackers.covariance import track_covariance
+    >>> result = AlphaBetaTracker(FixedGains(0.75, 0.5)).run([0, 1, 2, 3], [0, 1, 2, 4])
+    >>> found = track_covariance(result, sigma=1, sigma_v=1)
+    >>> found.filtered[1]
+    array([[1.  , 1.  ],
+           [1.  , 2.25]])
+    >>> found.nis.round(3)
+    array([ nan,  nan, 0.   , 0.209])
+    """
+    plots = result.measured
+    order = _order(result, acceleration_sigma)
+    noise = number("sigma_v", nonnegative("sigma_v", sigma_v))
+    variances = _plot_variances(sigma, plots)
+    dts = _time_steps(result)
+    used = ~np.isnan(result.innovation)
+    gains = _gain_vectors(result, dts, used, order)
+    _check_recursion(result, dts, gains)
+    first, known = _begin(result, used, velocity_sigma, gains, dts)
+    prior = np.zeros((order, order))
+    for place, value in (1, velocity_sigma), (2, acceleration_sigma):
+        if value is not None and place < order:
+            name = ("velocity_sigma", "acceleration_sigma")[place - 1]
+            prior[place, place] = number(name, nonnegative(name, value)) ** 2
+
+    predicted = np.full((*plots.shape, order, order), np.nan)
+    filtered = predicted.copy()
+    p = np.zeros((*plots.shape[1:], order, order))
+    measures = np.eye(order)[0]
+    for k in range(len(plots)):
+        move, push = _model(dts[k], order)
+        p = move @ p @ _turned(move) + noise**2 * _outer(push)
+        predicted[k] = np.where(_wide(k > known), p, np.nan)
+        rest = np.eye(order) - gains[k][..., :, None] * measures
+        p = rest @ p @ _turned(rest) + _wide(variances[k]) * _outer(gains[k])
+        start = prior + _wide(variances[k]) * _outer(measures)
+        # A velocity that will come from two plots counts as known until then, and drops out.
+        start[..., 1, 1] = np.where(known == k, start[..., 1, 1], 0.0)
+        p = np.where(_wide(first == k), start, p)
+        filtered[k] = np.where(_wide(k >= known), p, np.nan)
+
+    s = np.where(used, predicted[..., 0, 0] + variances, np.nan)
+    nis, axes = _agreement(result.innovation, s)
+    return TrackCovariance(predicted, filtered, s, nis, axes)
+
+
+def _order(result: TrackResult, acceleration_sigma: float | None) -> int:
+    with_gamma = bool((np.nan_to_num(result.gains.gamma) != 0).any())
+    if with_gamma and acceleration_sigma is None:
+        raise ValueError(
+            "acceleration_sigma: a tracker with gamma starts from an acceleration of 0; needed is "
+            "the standard deviation of a new track's acceleration (m/s²)"
+        )
+    return 2 if acceleration_sigma is None else 3
+
+
+def _plot_variances(sigma: ArrayLike, plots: Array) -> Array:
+    """σ² shaped as the plots, 0 where there is none."""
+    values = np.asarray(sigma, dtype=np.float64)
+    try:
+        full = np.broadcast_to(values, plots.shape)
+    except ValueError:
+        raise ValueError(
+            f"sigma: shape {values.shape} does not broadcast with the plots' {plots.shape}"
+        ) from None
+    missed = np.isnan(plots)
+    good = missed | (np.isfinite(full) & (full > 0))
+    within("sigma", full, good, "finite and > 0 where there is a plot")
+    return np.where(missed, 0.0, full) ** 2
+
+
+def _time_steps(result: TrackResult) -> Array:
+    """T of every step, to broadcast with the plots; 0 for the first."""
+    dts = np.diff(result.time, axis=0, prepend=result.time[:1])
+    return dts.reshape(dts.shape + (1,) * (result.measured.ndim - dts.ndim))
+
+
+def _gain_vectors(result: TrackResult, dts: Array, used: Mask, order: int) -> Array:
+    """K of every plot, 0 where it was not used; shape (n_steps, ...batch, n_axes, n)."""
+    t = np.where(used, dts, 1.0)
+    gains = result.gains
+    parts = (gains.alpha, gains.beta / t, gains.gamma / (2 * t * t))
+    return np.where(used[..., None], np.stack(parts[:order], axis=-1), 0.0)
+
+
+def _check_recursion(result: TrackResult, dts: Array, gains: Array) -> None:
+    """Gains tell all only of an α-β(-γ) recursion that keeps its acceleration."""
+    t = dts[1:]
+    x, v, a = (s[:-1] for s in (result.filtered, result.velocity, result.acceleration))
+    running = ~np.isnan(result.predicted[1:])
+    e = np.nan_to_num(result.innovation[1:])
+    k = np.concatenate([gains[1:], np.zeros((*gains[1:].shape[:-1], 1))], axis=-1)
+    expected = (
+        (result.predicted[1:], x + v * t + a * t * t / 2),
+        (result.filtered[1:], result.predicted[1:] + k[..., 0] * e),
+        (result.velocity[1:], v + a * t + k[..., 1] * e),
+        (result.acceleration[1:], a + k[..., 2] * e),
+    )
+    for actual, wanted in expected:
+        if not np.allclose(actual[running], wanted[running], rtol=1e-6, atol=1e-9):
+            raise ValueError(
+                "result: its states do not follow from its gains; a covariance can be told only of "
+                "an alpha-beta(-gamma) recursion that keeps its acceleration"
+            )
+
+
+def _begin(
+    result: TrackResult, used: Mask, velocity_sigma: float | None, gains: Array, dts: Array
+) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Steps of the first plot, and of that from which on velocity is known, for every axis.
+
+    Where velocity comes from a second plot, its gain is written into `gains`. A step that never
+    comes is n_steps.
+    """
+    seen = _seen(result)
+    steps = len(seen)
+    first = _first(seen)
+    index = np.arange(steps).reshape(-1, *(1,) * (seen.ndim - 1))
+    begun = ~np.isnan(result.filtered)
+    if ((begun & (index < first)) | (~np.isnan(result.predicted) & (index <= first))).any() or (
+        (index == first) & (result.velocity != 0)
+    ).any():
+        raise ValueError("result: it goes on from a state; needed are tracks from their first plot")
+
+    # A one-point start predicts from the step after the first plot on.
+    one_point = ((index == first + 1) & ~np.isnan(result.predicted)).any(axis=0)
+    second = _first(seen & (index > first))
+    span = (dts * (index > first) * (index <= second)).sum(axis=0)
+    meeting = (index == second) & (second < steps)
+    # In a one-point start the second plot is the first correction.
+    rate = gains[..., 1] * span
+    replaced = np.isclose(gains[..., 0], 1.0) & np.isclose(rate, 1.0)
+    if velocity_sigma is None and (meeting & one_point & used & ~replaced).any():
+        raise ValueError(
+            "velocity_sigma: a one-point start needs the standard deviation of a new track's "
+            "velocity (m/s)"
+        )
+    take = meeting & ~one_point
+    slope = np.divide(1.0, span, out=np.zeros(span.shape), where=span > 0)
+    gains[..., 0] = np.where(take, 1.0, gains[..., 0])
+    gains[..., 1] = np.where(take, slope, gains[..., 1])
+    presumed = one_point & (velocity_sigma is not None)
+    return first, np.where(presumed, first, second)
+
+
+def _seen(result: TrackResult) -> Mask:
+    """Where a plot counted: for a coupled tracker, with all its coordinates."""
+    seen = ~np.isnan(result.measured)
+    coupled = result.state is not None and result.state.rows.n_axes > 1
+    if coupled:
+        seen &= seen.all(axis=-1, keepdims=True)
+    return seen
+
+
+def _first(mask: Mask) -> NDArray[np.int_]:
+    """Index of the first True along axis 0; its length where there is none."""
+    if not len(mask):
+        return np.zeros(mask.shape[1:], dtype=np.int_)
+    return np.where(mask.any(axis=0), mask.argmax(axis=0), len(mask))
+
+
+def _model(dt: Array, order: int) -> tuple[Array, Array]:
+    """Φ and G of one step."""
+    one, zero = np.ones_like(dt), np.zeros_like(dt)
+    half = dt * dt / 2
+    rows = ((one, dt, half), (zero, one, dt), (zero, zero, one))
+    move = np.stack([np.stack(row[:order], axis=-1) for row in rows[:order]], axis=-2)
+    return move, np.stack((half, dt, one)[:order], axis=-1)
+
+
+def _agreement(innovation: Array, s: Array) -> tuple[Array, NDArray[np.int_]]:
+    terms = innovation**2 / s
+    if terms.ndim == 1:
+        terms = terms[:, None]
+    axes = np.count_nonzero(~np.isnan(terms), axis=-1)
+    return np.where(axes > 0, np.nansum(terms, axis=-1), np.nan), np.asarray(axes)
+
+
+def _wide(values: ArrayLike) -> Array:
+    return np.asarray(values)[..., None, None]
+
+
+def _outer(vector: Array) -> Array:
+    return vector[..., :, None] * vector[..., None, :]
+
+
+def _turned(matrix: Array) -> Array:
+    return np.swapaxes(matrix, -1, -2)

@@ -1,0 +1,302 @@
+"""Trackers whose arithmetic runs over lanes: at once or plot by plot, with the same numbers."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.rows import Rows
+from fuzzytrack.trackers.runner import Recursion, Runner
+from fuzzytrack.trackers.state import Gains, TrackState, spread
+
+__all__ = ["LaneTracker", "runner"]
+
+Array = NDArray[np.float64]
+
+
+class LaneTracker(ABC):
+    """A tracker that is given by its recursion; all of `fuzzytrack.Tracker` follows from it.
+
+    It is immutable and hashable, and must pickle: make it a frozen dataclass.
+
+    Attributes
+    ----------
+    coupled : bool
+        Whether a lane is a whole track, and not one of its axes.
+    needs_sigma : bool
+        Whether plots need a standard deviation.
+    """
+
+    coupled: bool = False
+    needs_sigma: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name for messages."""
+        return type(self).__name__
+
+    @abstractmethod
+    def recursion(self, n_axes: int) -> Recursion:
+        """The arithmetic of a lane.
+
+        Parameters
+        ----------
+        n_axes : int
+            Axes of a lane: 1 unless the tracker is coupled.
+        """
+
+    def run(
+        self,
+        t: ArrayLike,
+        z: ArrayLike,
+        sigma: ArrayLike | None = None,
+        *,
+        state: TrackState | None = None,
+    ) -> TrackResult:
+        """Track plots over time.
+
+        Parameters
+        ----------
+        t : array_like, shape (n_steps,) or (n_steps, ...batch)
+            Times (s), strictly increasing; for a batch, common or each track's own.
+        z : array_like, shape (n_steps,), (n_steps, n_axes) or (n_steps, ...batch, n_axes)
+            Plots (m); NaN where missed.
+        sigma : array_like, optional
+            Standard deviation of the plots (m), broadcast against `z`; needed by some schedulers.
+        state : TrackState, optional
+            State from which to go on; a new track unless given.
+
+        Returns
+        -------
+        TrackResult
+
+        Raises
+        ------
+        DataError
+            If a plot is infinite, or times are not finite and increasing; says where.
+        ValueError
+            If shapes do not fit, or the scheduler needs `sigma`.
+        """
+        plots = np.asarray(z, dtype=np.float64)
+        times = np.asarray(t, dtype=np.float64)
+        layout = _Layout.of(plots, self.coupled)
+        _check_plots(plots)
+        dts = _time_steps(times, plots.shape, state)
+        core = runner(self, layout.lane_axes)
+        _check_state(plots, state, core.rows)
+        after, raw = core(
+            core.fresh(layout.lanes) if state is None else state.lanes,
+            layout.to_lanes(plots),
+            layout.times_to_lanes(dts),
+            layout.to_lanes(self._sigma(sigma, plots)),
+        )
+        outputs = {name: layout.from_lanes(values) for name, values in raw.items()}
+        gains = Gains(*(outputs.pop(name) for name in ("alpha", "beta", "gamma")))
+        last = state
+        if len(plots):
+            last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
+        return TrackResult(time=times, measured=plots, gains=gains, state=last, **outputs)
+
+    def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
+        """State of a new track, or batch of tracks, after a first plot.
+
+        Parameters
+        ----------
+        z : array_like, shape (), (n_axes,) or (...batch, n_axes)
+            Plot (m).
+        t : array_like, shape () or (...batch)
+            Its time (s).
+        sigma : array_like, optional
+            Its standard deviation (m).
+        """
+        return self._one_step(None, z, t, sigma)
+
+    def step(
+        self, state: TrackState, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None
+    ) -> TrackState:
+        """State after one more plot; equals `run` to the last bit.
+
+        Parameters
+        ----------
+        state : TrackState
+            From `start`, `step` or a result.
+        z, t, sigma : array_like
+            As for `start`; the time later than that of the state.
+
+        Raises
+        ------
+        DataError, ValueError
+            As for `run`.
+        """
+        return self._one_step(state, z, t, sigma)
+
+    def _one_step(
+        self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
+    ) -> TrackState:
+        plots, times = np.asarray(z, dtype=np.float64)[None], np.asarray(t, dtype=np.float64)[None]
+        layout = _Layout.of(plots, self.coupled)
+        _check_plots(plots)
+        core = runner(self, layout.lane_axes)
+        _check_state(plots, state, core.rows)
+        dts = layout.times_to_lanes(_time_steps(times, plots.shape, state))
+        deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
+        sigmas = layout.to_lanes(self._sigma(deviation, plots))
+        shape = (layout.lanes, layout.lane_axes)
+        after = core.step(
+            core.fresh(layout.lanes) if state is None else state.lanes,
+            plots.reshape(shape),
+            dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
+            np.broadcast_to(sigmas[0], shape).tolist(),
+        )
+        return TrackState(np.array(times[0]), plots.shape[1:], after, core.rows)
+
+    def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
+        if sigma is None:
+            if self.needs_sigma:
+                raise ValueError(
+                    f"sigma: {self.name} needs the standard deviation of the plots (m)"
+                )
+            return np.full((1,) * plots.ndim, np.nan)
+        values = np.asarray(sigma, dtype=np.float64)
+        try:
+            full = np.broadcast_to(values, plots.shape)
+        except ValueError:
+            raise ValueError(
+                f"sigma: shape {values.shape} does not broadcast with the plots' {plots.shape}"
+            ) from None
+        bad = ~(np.isfinite(full) & (full > 0)) & ~np.isnan(plots)
+        if bad.any():
+            place = tuple(int(k) for k in np.argwhere(bad)[0])
+            raise ValueError(
+                f"sigma must be positive and finite where there is a plot; at index {place} it is "
+                f"{full[place]:g}"
+            )
+        return values.reshape((1,) * (plots.ndim - values.ndim) + values.shape)
+
+
+# Asked by identity first; comparing rule bases takes longer than a step.
+@dataclass(frozen=True, eq=False)
+class _Identity:
+    tracker: LaneTracker
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Identity) and self.tracker is other.tracker
+
+    def __hash__(self) -> int:
+        return id(self.tracker)
+
+
+def runner(tracker: LaneTracker, n_axes: int) -> Runner:
+    """Runner of a tracker; equal trackers share one, and what was compiled for it.
+
+    Parameters
+    ----------
+    tracker : LaneTracker
+    n_axes : int
+        Axes of a lane: 1 unless the tracker is coupled.
+    """
+    return _runner_of_this(_Identity(tracker), n_axes)
+
+
+@lru_cache(maxsize=256)
+def _runner_of_this(key: _Identity, n_axes: int) -> Runner:
+    return _runner_of_equal(key.tracker, n_axes)
+
+
+@lru_cache(maxsize=64)
+def _runner_of_equal(tracker: LaneTracker, n_axes: int) -> Runner:
+    return Runner(tracker.recursion(n_axes))
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """How plots of a shape are laid out as lanes; see `fuzzytrack.trackers.runner`."""
+
+    shape: tuple[int, ...]
+    n_axes: int
+    coupled: bool
+
+    @classmethod
+    def of(cls, plots: Array, coupled: bool) -> _Layout:
+        if plots.ndim == 0:
+            raise ValueError("z: needs a time axis; got a single number")
+        n_axes = plots.shape[-1] if plots.ndim > 1 else 1
+        if n_axes == 0:
+            raise ValueError(f"z: needs at least one axis of space; got shape {plots.shape}")
+        return cls(plots.shape, n_axes, coupled)
+
+    @property
+    def lane_axes(self) -> int:
+        return self.n_axes if self.coupled else 1
+
+    @property
+    def lanes(self) -> int:
+        return math.prod(self.shape[1:]) // self.lane_axes
+
+    def to_lanes(self, values: Array) -> Array:
+        """Array that broadcasts with the plots, to one that does with (n_steps, lanes, axes)."""
+        if values.size == 1:
+            return values.reshape(1, 1, 1)
+        full = values if values.shape == self.shape else np.broadcast_to(values, self.shape)
+        return full.reshape(self.shape[0], self.lanes, self.lane_axes)
+
+    def times_to_lanes(self, dts: Array) -> Array:
+        if dts.ndim == 1:
+            return dts[:, None]
+        flat = dts.reshape(len(dts), math.prod(dts.shape[1:]))
+        return np.repeat(flat, self.n_axes // self.lane_axes, axis=1)
+
+    def from_lanes(self, values: Array) -> Array:
+        """Output of the runner in the shape of the plots."""
+        if values.ndim == 3:
+            return values.reshape(self.shape)
+        return spread(values, self.shape, self.lane_axes)
+
+
+def _check_plots(plots: Array) -> None:
+    bad = np.isinf(plots)
+    if bad.any():
+        place = tuple(int(k) for k in np.argwhere(bad)[0])
+        raise DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
+
+
+def _check_state(plots: Array, state: TrackState | None, rows: Rows) -> None:
+    if state is None:
+        return
+    if state.shape != plots.shape[1:]:
+        raise ValueError(
+            f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape {state.shape}"
+        )
+    if state.rows != rows:
+        raise ValueError("state: it comes from a tracker that remembers other things")
+
+
+def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) -> Array:
+    """T of every step, shape of the times; 0 for the first step of a new track."""
+    if times.shape not in (shape[:1], shape[:-1]):
+        own = f" or {shape[:-1]}" if len(shape) > 2 else ""
+        raise ValueError(
+            f"t: shape {times.shape} does not fit plots of shape {shape}; {shape[:1]}{own} does"
+        )
+    if not np.isfinite(times).all():
+        place = int(np.argwhere(~np.isfinite(times))[0][0])
+        raise DataError(f"t: time at index {place} is not finite")
+    before = times[:1] if state is None else np.broadcast_to(state.time, times.shape[1:])[None]
+    dts = np.diff(np.concatenate([before, times]), axis=0)
+    bad = dts <= 0
+    if state is None:
+        bad[:1] = False
+    if bad.any():
+        place = int(np.argwhere(bad)[0][0])
+        raise DataError(
+            f"t: times must increase; the one at index {place} ({times[place].min():g} s) is not "
+            "later than the one before"
+        )
+    return dts
