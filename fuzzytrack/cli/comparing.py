@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import print_json, print_table, progress, show
+from fuzzytrack.cli.output import print_json, print_table, progress, show, with_error
 from fuzzytrack.cli.tracking import read
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.trackers.base import Tracker
@@ -83,8 +83,8 @@ def print_comparison(found: Comparison) -> None:
     """Table of a comparison, RMSE ± its standard error."""
     rows = []
     for k, name in enumerate(found.names):
-        predicted = _with_error(found.predicted_rmse[k], found.predicted_error[k])
-        filtered = _with_error(found.filtered_rmse[k], found.filtered_error[k])
+        predicted = with_error(found.predicted_rmse[k], found.predicted_error[k])
+        filtered = with_error(found.filtered_rmse[k], found.filtered_error[k])
         change = 100 * (found.predicted_rmse[k] / found.predicted_rmse[0] - 1)
         rows.append([name, predicted, filtered, "" if k == 0 else f"{change:+.1f} %"])
     rows += [[], ["the plots themselves", "", show(found.measured_rmse), ""]]
@@ -96,11 +96,3 @@ def print_comparison(found: Comparison) -> None:
             f"noise {found.sigma:g} m on each axis, seed {found.seed}"
         ),
     )
-
-
-def _with_error(value: float, error: float) -> str:
-    if not (error > 0 and math.isfinite(value)):
-        return show(value)
-    # As many digits as the error allows, with two of its own.
-    digits = max(0, 1 - math.floor(math.log10(error)))
-    return f"{value:.{digits}f} ± {error:.{digits}f}"

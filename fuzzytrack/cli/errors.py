@@ -9,7 +9,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from fuzzytrack.errors import NoRuleFiresWarning, PluginWarning, RuleBaseError
+from fuzzytrack.errors import FileError, NoRuleFiresWarning, PluginWarning
 
 __all__ = ["Commands", "one_line"]
 
@@ -46,7 +46,7 @@ class Commands(TyperGroup):
 
 def one_line(error: Exception) -> str:
     """Say in one line what is wrong; a place in a file comes first, as compilers print it."""
-    if isinstance(error, RuleBaseError) and error.location:
+    if isinstance(error, FileError) and error.location:
         return _printable(str(error))
     if isinstance(error, OSError) and error.filename is not None:
         return _printable(f"error: {error.filename}: {error.strerror}")

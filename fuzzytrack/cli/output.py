@@ -16,7 +16,7 @@ import typer
 if TYPE_CHECKING:
     from rich.table import Table
 
-__all__ = ["print_json", "print_table", "progress", "say", "show"]
+__all__ = ["plain", "print_json", "print_table", "progress", "say", "show", "with_error"]
 
 Progress = Callable[[float], None]
 
@@ -33,6 +33,15 @@ def show(number: float, digits: int = 4) -> str:
     text = f"{number:.{digits}g}"
     # No powers of ten where plain digits are short.
     return f"{number:.0f}" if "e+" in text and abs(number) < 1e9 else text
+
+
+def with_error(value: float, error: float) -> str:
+    """Write a number and its standard error, with as many digits as that allows."""
+    if not (error > 0 and math.isfinite(value)):
+        return show(value)
+    # Two digits of the error.
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    return f"{value:.{digits}f} ± {error:.{digits}f}"
 
 
 def print_table(
@@ -89,18 +98,19 @@ def _empty_table(style: Any) -> Table:
 
 def print_json(value: Any) -> None:
     """Print a value as JSON; what is no number becomes null."""
-    say(json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False))
+    say(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Value in the types of JSON; what is no number becomes null."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, np.generic):
-        return _plain(value.item())
+        return plain(value.item())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return str(value) if isinstance(value, Path) else value

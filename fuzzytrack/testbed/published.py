@@ -25,6 +25,7 @@ __all__ = [
     "TRACK_SETS",
     "TrackSet",
     "kim_lee",
+    "kim_lee_velocity",
     "llinas_maneuver",
     "s3",
     "track_set",
@@ -131,10 +132,21 @@ def kim_lee() -> tuple[Array, Array]:
     >>> round(float(position[40, 0] - position[39, 0]), 6)
     610.5
     """
+    t, acceleration = _kim_lee_acceleration()
+    return t, _integrated(0.0, 120.0, acceleration)[1:, None]
+
+
+def kim_lee_velocity() -> Array:
+    """Velocity of the target of Kim & Lee at its times (m/s), shape (100, 1); see `kim_lee`."""
+    _, acceleration = _kim_lee_acceleration()
+    return np.asarray(120.0 + np.cumsum(acceleration)[:, None])
+
+
+def _kim_lee_acceleration() -> tuple[Array, Array]:
+    """Times, and the acceleration in the second before each."""
     t: Array = np.arange(1.0, 101.0)
     gee = 5 * 9.81
-    acceleration = np.where((t > 25) & (t <= 35), gee, np.where((t > 65) & (t <= 75), -gee, 0.0))
-    return t, _integrated(0.0, 120.0, acceleration)[1:, None]
+    return t, np.where((t > 25) & (t <= 35), gee, np.where((t > 65) & (t <= 75), -gee, 0.0))
 
 
 def s3() -> tuple[Array, Array]:

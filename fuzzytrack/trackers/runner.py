@@ -19,7 +19,8 @@ Array = NDArray[np.float64]
 
 #: Lanes a block. Rows 4,096 bytes apart would share cache sets and evict one another.
 BLOCK = 248
-#: Lane-updates above which compiling pays; below, plain Python is done sooner.
+#: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
+#: sooner.
 COMPILE_ABOVE = 200_000
 
 _GAINS = ("alpha", "beta", "gamma")
@@ -47,14 +48,21 @@ class Recursion:
     step: Callable[[int], Callable[[Any], None]]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Runner:
     """Runs a recursion over lanes and time.
 
     Lanes are kept as an array of shape (rows.kept, lanes), see `fuzzytrack.trackers.rows.Rows`.
+
+    Attributes
+    ----------
+    recursion : Recursion
+    plain : int
+        Coordinates that were tracked in plain Python so far.
     """
 
     recursion: Recursion
+    plain: int = 0
 
     @property
     def rows(self) -> Rows:
@@ -85,7 +93,8 @@ class Runner:
         dts : ndarray, shape (n_steps, lanes or 1)
         sigmas : ndarray of three axes that broadcasts with `plots`
         native : bool, optional
-            Whether to run compiled; by the size of the job unless given. The results are the same.
+            Whether to run compiled; unless given, once the jobs together are large enough to pay
+            for the compilation. The results are the same.
 
         Returns
         -------
@@ -96,7 +105,8 @@ class Runner:
             beta, gamma, shape (n_steps, lanes).
         """
         if native is None:
-            native = plots.size > COMPILE_ABOVE
+            native = self.plain + plots.size > COMPILE_ABOVE
+        self.plain += 0 if native else plots.size
         return (self._run_compiled if native else self._run_plain)(lanes, plots, dts, sigmas)
 
     def step(

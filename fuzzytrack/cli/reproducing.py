@@ -1,0 +1,105 @@
+"""The command that rebuilds published experiments."""
+
+from __future__ import annotations
+
+import json as json_module
+import math
+from collections import Counter
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.output import plain, print_json, print_table, progress, say, show, with_error
+from fuzzytrack.cli.pictures import save_picture
+from fuzzytrack.io.files import whole_file
+from fuzzytrack.papers.reproduction import PAPERS, Reproduction, part
+from fuzzytrack.papers.reproduction import reproduce as rebuild
+from fuzzytrack.yamltree import suggestion
+
+__all__ = ["reproduce"]
+
+
+def reproduce(
+    paper: Annotated[str, typer.Argument(metavar="PAPER", help=f"{', '.join(PAPERS)}, or all.")],
+    runs: Annotated[
+        int | None,
+        typer.Option(min=1, help="Monte Carlo runs. [default: each paper's own]"),
+    ] = None,
+    seed: options.Seed = 0,
+    output: Annotated[
+        str | None,
+        typer.Option("--output", "-o", metavar="DIR", help="Folder for JSON and pictures."),
+    ] = None,
+    json: options.Json = False,
+) -> None:
+    """Rebuild the experiments of a paper, and hold its numbers against ours.
+
+    A number matches if the difference is within rounding, or within the Monte Carlo error of both.
+    """
+    chosen = list(PAPERS) if paper == "all" else [paper]
+    if chosen[0] not in PAPERS:
+        raise ValueError(f"no such paper {paper!r}{suggestion(paper, [*PAPERS, 'all'])}")
+    folder = None if output is None else _folder(output)
+    found = []
+    with progress(f"rebuilding {paper}") as watch:
+        for number, name in enumerate(chosen):
+            share = part(watch, number / len(chosen), (number + 1) / len(chosen))
+            found.append(rebuild(name, runs, seed, share))
+    written = [] if folder is None else _write(folder, found)
+    if json:
+        one = found[0].to_json_dict()
+        print_json(one if paper != "all" else {"papers": [f.to_json_dict() for f in found]})
+        return
+    for each in found:
+        _print(each)
+    for path in written:
+        say(f"wrote {path}")
+
+
+def _folder(output: str) -> Path:
+    folder = Path(output)
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(None, "is not a folder", output)
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+def _write(folder: Path, found: list[Reproduction]) -> list[Path]:
+    written = []
+    for each in found:
+        written.append(folder / f"{each.paper}.json")
+        with whole_file(written[-1]) as draft:
+            text = json_module.dumps(plain(each.to_json_dict()), indent=2, ensure_ascii=False)
+            draft.write_text(text + "\n", encoding="utf-8")
+    drawings = [(each.paper, *item) for each in found for item in each.pictures.items()]
+    with progress("drawing") as watch:
+        for number, (paper, name, draw) in enumerate(drawings, 1):
+            written.append(folder / f"{paper}-{name}.png")
+            save_picture(written[-1], draw)
+            watch(number / len(drawings))
+    return written
+
+
+def _print(found: Reproduction) -> None:
+    reasons = list(dict.fromkeys(r.why for r in found.rows if r.why))
+    rows: list[list[Any]] = [
+        [
+            r.table,
+            r.quantity,
+            "–" if r.published is None else show(r.published, 6),
+            with_error(r.ours, math.nan if r.se is None else r.se),
+            ("" if r.published is None else r.verdict)
+            + (f" ({reasons.index(r.why) + 1})" if r.why else ""),
+        ]
+        for r in found.rows
+    ]
+    print_table(["", "", "published", "ours", "verdict"], rows, title=found.title, words=2)
+    counts = Counter(r.verdict for r in found.rows)
+    say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    for number, why in enumerate(reasons, 1):
+        say(f"({number}) {why}")
+    for note in found.notes:
+        say(f"* {note}")
+    say()

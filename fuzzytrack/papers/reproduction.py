@@ -1,0 +1,189 @@
+"""What a reproduced experiment is: rows of published and own numbers, with a verdict each."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["PAPERS", "Progress", "Reproduction", "Row", "part", "reproduce", "row"]
+
+#: Called with the share of the work that is done.
+Progress = Callable[[float], None]
+
+#: Papers by name, and the modules that rebuild their experiments.
+PAPERS = {
+    "alwagih-abdulla": "alwagih_abdulla",
+    "kim-lee": "kim_lee",
+    "llinas": "llinas",
+    "njonjo": "njonjo",
+    "zhang-jiang": "zhang_jiang",
+}
+
+MATCHES, DIFFERS, NOT_STATED = "matches", "differs", "not stated"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number of a paper, and ours.
+
+    Attributes
+    ----------
+    table : str
+        Table, figure or equation of the paper.
+    quantity : str
+        What the number is, with its unit.
+    published : float or None
+        The paper's number; None where it gives none.
+    ours : float
+        Ours.
+    se : float or None
+        Standard error of ours over Monte Carlo runs; None of what is no average.
+    runs : int or None
+        Number of those runs.
+    verdict : {"matches", "differs", "not stated"}
+        Whether ours is the paper's number.
+    why : str
+        Why it differs, or how the paper is read.
+    """
+
+    table: str
+    quantity: str
+    published: float | None
+    ours: float
+    se: float | None
+    runs: int | None
+    verdict: str
+    why: str = ""
+
+
+def row(
+    table: str,
+    quantity: str,
+    ours: float,
+    *,
+    published: float | None = None,
+    within: float = 0.0,
+    se: float | None = None,
+    runs: int | None = None,
+    why: str = "",
+) -> Row:
+    """Row with its verdict.
+
+    Parameters
+    ----------
+    table, quantity, ours, published, se, runs, why
+        As for `Row`.
+    within : float
+        Difference that rounding, or the paper's own Monte Carlo error, explains. Two of our own
+        standard errors come on top of it.
+    """
+    if published is None:
+        verdict = NOT_STATED
+    else:
+        allowed = within + 2 * (se or 0.0)
+        verdict = MATCHES if abs(ours - published) <= allowed else DIFFERS
+    own_se = None if se is None or math.isnan(se) else float(se)
+    return Row(table, quantity, published, float(ours), own_se, runs, verdict, why)
+
+
+@dataclass(frozen=True, eq=False)
+class Reproduction:
+    """A paper's experiments, rebuilt.
+
+    Attributes
+    ----------
+    paper : str
+        Name, one of `PAPERS`.
+    title : str
+        Authors, year and subject.
+    rows : tuple of Row
+        Numbers, in the order of the paper.
+    notes : tuple of str
+        What is to be known of the paper as a whole: how it is read, what is not reproducible.
+    pictures : mapping of str to callable
+        By name: functions that draw a figure of the paper.
+    """
+
+    paper: str
+    title: str
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
+    pictures: Mapping[str, Callable[[], Figure]] = field(default_factory=dict)
+
+    def ours(self, quantity: str, table: str | None = None) -> float:
+        """Our number of a quantity.
+
+        Parameters
+        ----------
+        quantity : str
+            As in its row.
+        table : str, optional
+            Table of that row; the only one with the quantity unless given.
+
+        Raises
+        ------
+        KeyError
+            If there is not exactly one such row.
+        """
+        found = [r for r in self.rows if r.quantity == quantity and table in (None, r.table)]
+        if len(found) != 1:
+            raise KeyError(f"{len(found)} rows of {self.paper} have the quantity {quantity!r}")
+        return found[0].ours
+
+    def to_json_dict(self) -> dict[str, Any]:
+        """Paper, rows and notes as plain types."""
+        return {
+            "paper": self.paper,
+            "title": self.title,
+            "notes": list(self.notes),
+            "rows": [asdict(r) for r in self.rows],
+        }
+
+
+def reproduce(
+    name: str, runs: int | None = None, seed: int = 0, progress: Progress | None = None
+) -> Reproduction:
+    """Rebuild the experiments of a paper.
+
+    Parameters
+    ----------
+    name : str
+        One of `PAPERS`.
+    runs : int, optional
+        Monte Carlo runs of each experiment; as many as the paper's unless given.
+    seed : int
+        Seed of the noise.
+    progress : callable, optional
+        Called with the share of the work that is done.
+
+    Returns
+    -------
+    Reproduction
+
+    Raises
+    ------
+    ValueError
+        If there is no such paper, or a number is out of range.
+    """
+    if name not in PAPERS:
+        raise ValueError(f"name: unknown paper {name!r}; one of {', '.join(PAPERS)}")
+    if runs is not None and runs < 1:
+        raise ValueError(f"runs must be at least 1, got {runs}")
+    if seed < 0:
+        raise ValueError(f"seed must not be negative, got {seed}")
+    module = importlib.import_module(f"fuzzytrack.papers.{PAPERS[name]}")
+    found: Reproduction = module.reproduce(
+        module.RUNS if runs is None else runs, seed, progress or (lambda share: None)
+    )
+    return found
+
+
+def part(progress: Progress, low: float, high: float) -> Progress:
+    """Progress of one part of the work, from the share `low` to `high` of all of it."""
+    return lambda share: progress(low + (high - low) * share)

@@ -1,0 +1,22 @@
+import numpy as np
+
+import fuzzytrack as ft
+from fuzzytrack.trackers import runner as module
+from fuzzytrack.trackers.lanes import runner
+
+
+def test_many_small_jobs_are_compiled_like_one_large_one(monkeypatch):
+    monkeypatch.setattr(module, "COMPILE_ABOVE", 100)
+    compiled = []
+    original = module.Runner._run_compiled
+
+    def noted(self, *given):
+        compiled.append(given[1].size)
+        return original(self, *given)
+
+    monkeypatch.setattr(module.Runner, "_run_compiled", noted)
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(0.4321, 0.1234))
+    results = [tracker.run(np.arange(40), np.arange(40.0) ** 1.5) for _ in range(4)]
+    assert compiled == [40, 40]
+    assert runner(tracker, 1).plain == 80
+    np.testing.assert_array_equal(results[0].filtered, results[3].filtered)
