@@ -136,6 +136,20 @@ class Reproduction:
             raise KeyError(f"{len(found)} rows of {self.paper} have the quantity {quantity!r}")
         return found[0].ours
 
+    def __str__(self) -> str:
+        """Rows with a published number, as a table of text; all rows if there is none."""
+        shown = [r for r in self.rows if r.published is not None] or self.rows
+        lines = [("", "", "published", "ours", "")]
+        for r in shown:
+            published = "" if r.published is None else f"{r.published:.6g}"
+            error = "" if r.se is None else f" ± {r.se:.2g}"
+            lines.append((r.table, r.quantity, published, f"{r.ours:.6g}{error}", r.verdict))
+        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+        return "\n".join(
+            "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+            for line in lines
+        )
+
     def to_json_dict(self) -> dict[str, Any]:
         """Paper, rows and notes as plain types."""
         return {
