@@ -101,22 +101,18 @@ def track_covariance(
     array([[1.  , 1.  ],
            [1.  , 2.25]])
     >>> found.nis.round(3)
-    array([ nan,  nan, 0.   , 0.209])
+    array([  nan,   nan, 0.   , 0.221])
     """
     plots = result.measured
     order = _order(result, acceleration_sigma)
     noise = number("sigma_v", nonnegative("sigma_v", sigma_v))
+    prior = _prior(velocity_sigma, acceleration_sigma, order)
     variances = _plot_variances(sigma, plots)
     dts = _time_steps(result)
     used = ~np.isnan(result.innovation)
     gains = _gain_vectors(result, dts, used, order)
     _check_recursion(result, dts, gains)
     first, known = _begin(result, used, velocity_sigma, gains, dts)
-    prior = np.zeros((order, order))
-    for place, value in (1, velocity_sigma), (2, acceleration_sigma):
-        if value is not None and place < order:
-            name = ("velocity_sigma", "acceleration_sigma")[place - 1]
-            prior[place, place] = number(name, nonnegative(name, value)) ** 2
 
     predicted = np.full((*plots.shape, order, order), np.nan)
     filtered = predicted.copy()
@@ -127,11 +123,11 @@ def track_covariance(
         p = move @ p @ _turned(move) + noise**2 * _outer(push)
         predicted[k] = np.where(_wide(k > known), p, np.nan)
         rest = np.eye(order) - gains[k][..., :, None] * measures
-        p = rest @ p @ _turned(rest) + _wide(variances[k]) * _outer(gains[k])
-        start = prior + _wide(variances[k]) * _outer(measures)
-        # A velocity that will come from two plots counts as known until then, and drops out.
-        start[..., 1, 1] = np.where(known == k, start[..., 1, 1], 0.0)
-        p = np.where(_wide(first == k), start, p)
+        r = _wide(variances[k])
+        p = rest @ p @ _turned(rest) + r * _outer(gains[k])
+        p = np.where(_wide(first == k), prior + r * _outer(measures), p)
+        # The unknown velocity counts as 0 until two plots replace it: it drops out of what follows.
+        p[..., 1, 1] = np.where((first == k) & (known > k), 0.0, p[..., 1, 1])
         filtered[k] = np.where(_wide(k >= known), p, np.nan)
 
     s = np.where(used, predicted[..., 0, 0] + variances, np.nan)
@@ -147,6 +143,17 @@ def _order(result: TrackResult, acceleration_sigma: float | None) -> int:
             "the standard deviation of a new track's acceleration (m/s²)"
         )
     return 2 if acceleration_sigma is None else 3
+
+
+def _prior(velocity_sigma: float | None, acceleration_sigma: float | None, order: int) -> Array:
+    """Covariance of a new track without its plot."""
+    variances = [0.0, 0.0, 0.0]
+    names = ("", "velocity_sigma", "acceleration_sigma")
+    for place, value in (1, velocity_sigma), (2, acceleration_sigma):
+        if value is not None:
+            name = names[place]
+            variances[place] = number(name, nonnegative(name, value)) ** 2
+    return np.diag(variances[:order])
 
 
 def _plot_variances(sigma: ArrayLike, plots: Array) -> Array:
@@ -172,7 +179,7 @@ def _time_steps(result: TrackResult) -> Array:
 
 def _gain_vectors(result: TrackResult, dts: Array, used: Mask, order: int) -> Array:
     """K of every plot, 0 where it was not used; shape (n_steps, ...batch, n_axes, n)."""
-    t = np.where(used, dts, 1.0)
+    t = np.where(dts > 0, dts, 1.0)
     gains = result.gains
     parts = (gains.alpha, gains.beta / t, gains.gamma / (2 * t * t))
     return np.where(used[..., None], np.stack(parts[:order], axis=-1), 0.0)
@@ -211,11 +218,7 @@ def _begin(
     steps = len(seen)
     first = _first(seen)
     index = np.arange(steps).reshape(-1, *(1,) * (seen.ndim - 1))
-    begun = ~np.isnan(result.filtered)
-    if ((begun & (index < first)) | (~np.isnan(result.predicted) & (index <= first))).any() or (
-        (index == first) & (result.velocity != 0)
-    ).any():
-        raise ValueError("result: it goes on from a state; needed are tracks from their first plot")
+    _check_whole(result, first, index)
 
     # A one-point start predicts from the step after the first plot on.
     one_point = ((index == first + 1) & ~np.isnan(result.predicted)).any(axis=0)
@@ -236,6 +239,14 @@ def _begin(
     gains[..., 1] = np.where(take, slope, gains[..., 1])
     presumed = one_point & (velocity_sigma is not None)
     return first, np.where(presumed, first, second)
+
+
+def _check_whole(result: TrackResult, first: NDArray[np.int_], index: NDArray[np.int_]) -> None:
+    early = ~np.isnan(result.filtered) & (index < first)
+    early |= ~np.isnan(result.predicted) & (index <= first)
+    early |= (result.velocity != 0) & (index == first)
+    if early.any():
+        raise ValueError("result: it goes on from a state; needed are tracks from their first plot")
 
 
 def _seen(result: TrackResult) -> Mask:

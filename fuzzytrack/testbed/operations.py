@@ -1,0 +1,380 @@
+"""Floating-point operations of a tracker, counted by running its arithmetic on numbers that count.
+
+The convention is that of MATLAB 5, in which Llinas et al. (1998) counted their Table 5.7: an
+addition, subtraction, multiplication, division or power is one operation, and so is a square root
+or another elementary function. A comparison, a choice, a change of sign, an absolute value, a
+rounding and an assignment are none, unless a `Tally` is told to count them. Arithmetic on numbers
+that count is counted also where it serves an index; arithmetic on plain integers never is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from types import CellType, CodeType, FunctionType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
+from fuzzytrack.trackers.lanes import LaneTracker
+
+__all__ = ["Counted", "OperationCount", "Tally", "count_operations", "count_program"]
+
+_SCHEDULER, _RECURSION = "scheduler", "recursion"
+_PERIOD, _SIGMA = 60.0, 115.0
+
+
+class Tally:
+    """Counts the operations on the numbers that it makes.
+
+    Parameters
+    ----------
+    comparisons, signs : bool
+        Whether to count comparisons too; and changes of sign and absolute values.
+
+    Attributes
+    ----------
+    total : int
+        Operations so far.
+    """
+
+    def __init__(self, comparisons: bool = False, signs: bool = False) -> None:
+        self.comparisons = comparisons
+        self.signs = signs
+        self.total = 0
+
+    def number(self, value: float) -> Counted:
+        """A number on which operations are counted; a counted one as it is."""
+        return value if isinstance(value, Counted) else Counted(value, self)
+
+
+class Counted:
+    """A number that reports every operation on it to a `Tally`; made by `Tally.number`.
+
+    Results are counted numbers again; of a comparison they are plain. It serves as an index where
+    it is whole.
+    """
+
+    __slots__ = ("tally", "value")
+
+    def __init__(self, value: float, tally: Tally) -> None:
+        self.value = value
+        self.tally = tally
+
+    def _result(self, value: float, cost: int = 1) -> Counted:
+        self.tally.total += cost
+        return Counted(value, self.tally)
+
+    def __add__(self, other: Counted | float) -> Counted:
+        return self._result(self.value + plain(other))
+
+    def __sub__(self, other: Counted | float) -> Counted:
+        return self._result(self.value - plain(other))
+
+    def __mul__(self, other: Counted | float) -> Counted:
+        return self._result(self.value * plain(other))
+
+    def __truediv__(self, other: Counted | float) -> Counted:
+        return self._result(self.value / plain(other))
+
+    def __pow__(self, other: Counted | float) -> Counted:
+        return self._result(self.value ** plain(other))
+
+    def __radd__(self, other: float) -> Counted:
+        return self._result(other + self.value)
+
+    def __rsub__(self, other: float) -> Counted:
+        return self._result(other - self.value)
+
+    def __rmul__(self, other: float) -> Counted:
+        return self._result(other * self.value)
+
+    def __rtruediv__(self, other: float) -> Counted:
+        return self._result(other / self.value)
+
+    def __rpow__(self, other: float) -> Counted:
+        return self._result(other**self.value)
+
+    def __neg__(self) -> Counted:
+        return self._result(-self.value, self.tally.signs)
+
+    def __abs__(self) -> Counted:
+        return self._result(abs(self.value), self.tally.signs)
+
+    def _compared(self, answer: bool) -> bool:
+        self.tally.total += self.tally.comparisons
+        return answer
+
+    def __eq__(self, other: object) -> bool:
+        return self._compared(self.value == plain(other))
+
+    def __ne__(self, other: object) -> bool:
+        return self._compared(self.value != plain(other))
+
+    def __lt__(self, other: Counted | float) -> bool:
+        return self._compared(self.value < plain(other))
+
+    def __le__(self, other: Counted | float) -> bool:
+        return self._compared(self.value <= plain(other))
+
+    def __gt__(self, other: Counted | float) -> bool:
+        return self._compared(self.value > plain(other))
+
+    def __ge__(self, other: Counted | float) -> bool:
+        return self._compared(self.value >= plain(other))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+    def __int__(self) -> int:
+        return int(self.value)
+
+    def __index__(self) -> int:
+        if int(self.value) != self.value:
+            raise TypeError(f"an index must be whole, got {self.value}")
+        return int(self.value)
+
+    def __round__(self) -> int:
+        return round(self.value)
+
+    def __repr__(self) -> str:
+        return f"Counted({self.value!r})"
+
+
+def plain(value: Any) -> Any:
+    """The number behind a counted one; anything else as it is."""
+    return value.value if isinstance(value, Counted) else value
+
+
+def count_program(program: Callable[..., Any], *arguments: Any, **options: Any) -> tuple[int, Any]:
+    """Count the operations of a program that makes its numbers with ``number``.
+
+    Parameters
+    ----------
+    program : callable
+        Function that takes, beside its arguments, ``number``: a function of a number through which
+        it passes whatever it calculates with.
+    *arguments, **options
+        Its other arguments.
+
+    Returns
+    -------
+    int
+        Number of operations.
+    Any
+        What the program returned.
+
+    Examples
+    --------
+    >>> from fuzzytrack.testbed.operations import count_program
+    >>> def distance(x, y, number):
+    ...     x, y = number(x), number(y)
+    ...     return (x * x + y * y) ** 0.5
+    >>> count_program(distance, 3.0, 4.0)
+    (4, Counted(5.0))
+    """
+    tally = Tally()
+    result = program(*arguments, number=tally.number, **options)
+    return tally.total, result
+
+
+# ---------------------------------------------------------------- kernels
+
+
+@dataclass(frozen=True)
+class OperationCount:
+    """Operations of a tracker on one track.
+
+    Attributes
+    ----------
+    scheduler, recursion : int
+        Operations of the gains and of all else, over all scans and axes.
+    scheduler_per_update, recursion_per_update : float
+        Their mean for one axis at one corrected scan; NaN where there was none.
+    """
+
+    scheduler: int
+    recursion: int
+    scheduler_per_update: float
+    recursion_per_update: float
+
+    @property
+    def total(self) -> int:
+        """Operations of the scheduler and the recursion together."""
+        return self.scheduler + self.recursion
+
+    @property
+    def per_update(self) -> float:
+        """Mean operations of both for one axis at one corrected scan."""
+        return self.scheduler_per_update + self.recursion_per_update
+
+
+def count_operations(
+    tracker: LaneTracker | GainScheduler, scans: int = 20, n_axes: int = 2
+) -> OperationCount:
+    """Count the operations of a tracker's own kernel on one track.
+
+    Parameters
+    ----------
+    tracker : LaneTracker or GainScheduler
+        A scheduler stands for an `fuzzytrack.AlphaBetaTracker` with it.
+    scans : int
+        Number of scans, at least 1; none is missed.
+    n_axes : int
+        Number of axes of space, at least 1.
+
+    Returns
+    -------
+    OperationCount
+
+    Raises
+    ------
+    TypeError
+        If `tracker` is neither.
+    ValueError
+        If a number is less than 1.
+
+    Notes
+    -----
+    The functions are those of the plain path of the runner, rebuilt so that all their constants
+    count. Only what is executed is counted, not the other side of a select. The recursion serves
+    all trackers alike, so it does more than Eqs. 2.1 to 2.3 of Llinas et al. (1998) ask for: an
+    acceleration also where γ = 0, the time since the last plot, and the number of plots. Where a
+    path depends on the data, it is that of a noisy straight track, with scans 60 s apart and noise
+    of 115 m.
+
+    Examples
+    --------
+    >>> from fuzzytrack import FixedGains
+    >>> from fuzzytrack.testbed.operations import count_operations
+    >>> count_operations(FixedGains(0.5, 0.2)).scheduler
+    0
+    """
+    if isinstance(tracker, GainScheduler):
+        tracker = AlphaBetaTracker(tracker)
+    if not isinstance(tracker, LaneTracker):
+        raise TypeError(
+            f"tracker must be a LaneTracker or a GainScheduler, got {type(tracker).__name__}"
+        )
+    for name, number in (("scans", scans), ("n_axes", n_axes)):
+        if number < 1:
+            raise ValueError(f"{name} must be at least 1, got {number}")
+    plots = _plots(scans, n_axes)
+    groups = [range(n_axes)] if tracker.coupled else [range(j, j + 1) for j in range(n_axes)]
+    scheduler = recursion = updates = 0
+    at_updates = [0, 0]
+    for axes in groups:
+        for corrected, spent in _run(tracker, [[row[j] for j in axes] for row in plots]):
+            scheduler += spent[0]
+            recursion += spent[1]
+            if corrected:
+                updates += len(axes)
+                at_updates = [at_updates[0] + spent[0], at_updates[1] + spent[1]]
+    means = [spent / updates if updates else math.nan for spent in at_updates]
+    return OperationCount(scheduler, recursion, *means)
+
+
+def _plots(scans: int, n_axes: int) -> list[list[float]]:
+    random = np.random.default_rng(1)
+    way = np.outer(np.arange(scans), 300.0 + 60.0 * np.arange(n_axes))
+    plots: list[list[float]] = (way + _SIGMA * random.normal(size=way.shape)).tolist()
+    return plots
+
+
+def _run(tracker: LaneTracker, plots: list[list[float]]) -> Iterator[tuple[bool, tuple[int, int]]]:
+    """For every scan of a lane: whether it was corrected, and operations of scheduler and rest."""
+    n_axes = len(plots[0])
+    recursion = tracker.recursion(n_axes)
+    rows = recursion.rows
+    tally, inside = Tally(), Tally()
+    scheduler = getattr(tracker, "scheduler", None)
+    kernel = scheduler.kernel(n_axes).__code__ if isinstance(scheduler, GainScheduler) else None
+    step = _counting(recursion.step(1), tally, inside, kernel)
+    fresh = [0.0] * rows.total
+    fresh[: rows.velocity] = [math.nan] * rows.velocity
+    fresh[rows.memory : rows.state] = recursion.memory
+    b = [tally.number(value) for value in fresh]
+    for k, plot in enumerate(plots):
+        given = [*plot, *[_SIGMA] * n_axes, _PERIOD if k else 0.0]
+        b[rows.plot : rows.change] = [tally.number(value) for value in given]
+        before = inside.total, tally.total
+        step(b)
+        of_scheduler = inside.total - before[0]
+        corrected = not math.isnan(b[rows.gains])
+        yield corrected, (of_scheduler, tally.total - before[1] - of_scheduler)
+
+
+def _counting(
+    function: Callable[..., Any], tally: Tally, inside: Tally, kernel: CodeType | None
+) -> Callable[..., Any]:
+    """The function, and all that it calls, with constants and `math` that count.
+
+    What the function with the code `kernel` spends is added to `inside` as well.
+    """
+    known: dict[int, Any] = {}
+    namespace = SimpleNamespace(**{n: _elementary(v, tally) for n, v in vars(math).items()})
+
+    def prepare(value: Any) -> Any:
+        if isinstance(value, FunctionType):
+            if id(value) not in known:
+                known[id(value)] = rebuild(value)
+            return known[id(value)]
+        if value is math:
+            return namespace
+        if isinstance(value, float):
+            return tally.number(value)
+        if isinstance(value, tuple):
+            return tuple(prepare(v) for v in value)
+        return _elementary(value, tally)
+
+    def rebuild(original: FunctionType) -> Callable[..., Any]:
+        names = _names(original.__code__)
+        scope = {n: prepare(v) for n, v in original.__globals__.items() if n in names}
+        cells = tuple(CellType(prepare(c.cell_contents)) for c in original.__closure__ or ())
+        # Literals count too, also where a select hands one on to an operation with another.
+        code = original.__code__
+        code = code.replace(co_consts=tuple(prepare(c) for c in code.co_consts))
+        copy = FunctionType(code, scope, original.__name__, original.__defaults__, cells)
+        if original.__code__ is not kernel:
+            return copy
+
+        def watched(*arguments: Any) -> Any:
+            before = tally.total
+            answer = copy(*arguments)
+            inside.total += tally.total - before
+            return answer
+
+        return watched
+
+    counting: Callable[..., Any] = prepare(function)
+    return counting
+
+
+def _elementary(value: Any, tally: Tally) -> Any:
+    """A function of `math` made to count one operation; its constants, and all else, as they are.
+
+    What asks or rounds is free.
+    """
+    free = (math.isnan, math.isinf, math.isfinite, math.floor, math.ceil, math.trunc)
+    if getattr(value, "__module__", None) != "math" or not callable(value):
+        return value
+
+    def call(*arguments: Any) -> Any:
+        answer = value(*map(plain, arguments))
+        if value in free:
+            return answer
+        tally.total += 1
+        return tally.number(answer)
+
+    return call
+
+
+def _names(code: CodeType) -> set[str]:
+    """Names that a function may look up globally, inner functions included."""
+    inner = (c for c in code.co_consts if isinstance(c, CodeType))
+    return set(code.co_names).union(*map(_names, inner))
