@@ -21,7 +21,7 @@ from fuzzytrack.fuzzy.rulebase import (
     TableLayout,
 )
 from fuzzytrack.fuzzy.variable import GRIDS, Universe, Variable
-from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted
+from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted, suggestion
 from fuzzytrack.yamltree import Mapping as MappingNode
 
 __all__ = [
@@ -35,7 +35,7 @@ __all__ = [
 
 FORMAT_VERSION = "1"
 MAX_NAME = 64
-SCHEDULER_KEYS = ("normalization", "gains")
+SCHEDULER_KEYS = ("normalization", "gains", "opening")
 # "@" introduces a confidence, and "," and blanks separate cells.
 SET_NAME = r"[^@,\s]+"
 VARIABLE_NAME = r"[^\W\d]\w*"
@@ -129,11 +129,24 @@ class Reader:
         return Operators(words["and"], words["or"], words["defuzzification"])
 
     def _scheduler(self, node: Node) -> tuple[tuple[str, str], ...]:
-        fields = self.document.fields(node, "scheduler", (), SCHEDULER_KEYS)
-        return tuple(
-            (key, Word(self.document.text(value, key), self.document.location(value)))
-            for key, value in fields.items()
-        )
+        """Words of the format; beside a normalization, also numbers that are its parameters."""
+        document = self.document
+        entries = document.entries(node, "scheduler")
+        settings = []
+        for word, (key, value) in entries.items():
+            if word not in SCHEDULER_KEYS:
+                number = isinstance(value, Scalar) and value.text[:1] in "+-.0123456789"
+                if "normalization" not in entries or not word.isidentifier() or not number:
+                    raise document.error(
+                        key,
+                        f"unknown key in scheduler: {quoted(word)}"
+                        f"{suggestion(word, SCHEDULER_KEYS)}; beside a normalization also the "
+                        "numbers that it takes",
+                    )
+                document.number(value, word)
+            text = Word(document.text(value, word), document.location(value))
+            settings.append((Word(word, document.location(key)), text))
+        return tuple(settings)
 
     # ---------------------------------------------------------------- variables
 

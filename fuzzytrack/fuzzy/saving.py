@@ -27,6 +27,7 @@ _HEADER = "# yaml-language-server: $schema=rulebase.schema.json"
 _WIDTH = 96
 
 _PLAIN_WORD = re.compile(r"[^\W\d](?:[\w.@-]*[\w@])?")
+_PLAIN_NUMBER = re.compile(r"-?[0-9]+(?:\.[0-9]+)?")
 _PLAIN_TEXT = re.compile(r"[^\W\d](?:[\w ().,;/%+&*'^-]*[\w).])?")
 # What some YAML reader or other takes for a truth value or nothing.
 _NOT_WORDS = frozenset({"y", "n", "yes", "no", "on", "off", "true", "false", "null"})
@@ -119,7 +120,7 @@ def _lines(rules: RuleBase) -> Iterator[str]:
     yield "rules:"
     yield from _table(rules, rules.layout) if rules.layout else _list(rules)
     if rules.scheduler:
-        pairs = ", ".join(f"{_word(key)}: {_word(value)}" for key, value in rules.scheduler)
+        pairs = ", ".join(f"{_word(key)}: {_setting(value)}" for key, value in rules.scheduler)
         yield ""
         yield f"scheduler: {{{pairs}}}"
 
@@ -264,6 +265,10 @@ def _sure(confidence: float) -> str:
 
 def _number(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
+
+
+def _setting(word: str) -> str:
+    return word if _PLAIN_NUMBER.fullmatch(word) else _word(word)
 
 
 def _word(word: str) -> str:

@@ -29,7 +29,8 @@ Schema = dict[str, Any]
 
 _SCHEDULER = {
     "normalization": "How innovations become the inputs, e.g. chan.",
-    "gains": "What the outputs are, e.g. w-domain or direct.",
+    "gains": "What the outputs are: w-domain, kalata or direct.",
+    "opening": "Gains of a new track, growing-memory; those of the rules from the start without.",
 }
 
 
@@ -54,11 +55,7 @@ def rulebase_schema() -> Schema:
             "description": "A table over two inputs, or a list of if/then rules.",
             "oneOf": [_table(), _list()],
         },
-        "scheduler": _closed(
-            "How a gain scheduler uses the rule base.",
-            {key: _text(_SCHEDULER[key]) for key in SCHEDULER_KEYS},
-            required=(),
-        ),
+        "scheduler": _scheduler(),
     }
     optional = {"description", "source", "scheduler"}
     top = _closed(
@@ -141,6 +138,16 @@ def _operators() -> Schema:
         for key, (description, allowed) in words.items()
     }
     return _closed("The algebra of the rules.", properties, tuple(words))
+
+
+def _scheduler() -> Schema:
+    known = {key: _text(_SCHEDULER[key]) for key in SCHEDULER_KEYS}
+    return {
+        **_closed("How a gain scheduler uses the rule base.", known, required=()),
+        "additionalProperties": _number("A number that the normalization takes, by its name."),
+        "if": {"not": {"required": ["normalization"]}},
+        "then": {"propertyNames": {"enum": list(SCHEDULER_KEYS)}},
+    }
 
 
 def _definitions() -> Schema:

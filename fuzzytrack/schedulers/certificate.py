@@ -60,7 +60,8 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
     Parameters
     ----------
     rules : RuleBase
-        With outputs stiffness and damping, or alpha and beta.
+        With outputs stiffness and damping, stiffness alone (damping on Kalata's curve), or alpha
+        and beta.
     reach : {"universe", "rules"}
         ``universe`` takes the box of the outputs' universes, whatever the rules say. ``rules``
         takes the hull of what the single rules conclude, which is smaller; it is valid where every
@@ -77,6 +78,11 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
         If the outputs are others, or ``rules`` is not valid for the algebra.
     ValueError
         If `reach` is unknown.
+
+    Notes
+    -----
+    The gains of an opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are left out: it is over
+    after a few plots, and so decides nothing about whether the error shrinks in the end.
     """
     return _gains(rules, reach)[0]
 
@@ -86,11 +92,17 @@ def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
     if reach not in REACHES:
         raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
     names = sorted(rules.output_names, reverse="stiffness" in rules.output_names)
-    if names not in (["stiffness", "damping"], ["alpha", "beta"]):
+    if names not in (["stiffness", "damping"], ["stiffness"], ["alpha", "beta"]):
         raise RuleBaseError(
-            f"{rules.name} cannot be certified: needed are outputs stiffness and damping, or alpha "
-            f"and beta; it has {', '.join(rules.output_names)}"
+            f"{rules.name} cannot be certified: needed are outputs stiffness and damping, "
+            f"stiffness alone, or alpha and beta; it has {', '.join(rules.output_names)}"
         )
+    if names == ["stiffness"]:
+        universe = rules.outputs[0].universe
+        ends = np.array([universe.low, universe.high])
+        if reach == "rules":
+            ends = _rule_conclusions(rules, names)
+        return _kalata_curve(float(ends.min()), float(ends.max()))
     w_domain = "stiffness" in names
     if reach == "rules":
         points = _rule_conclusions(rules, names)
@@ -106,8 +118,23 @@ def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
     return corners, corners
 
 
+def _kalata_curve(lowest: float, highest: float, pieces: int = 32) -> tuple[Array, Array]:
+    """Kalata's gains between two stiffnesses: corners of an outline around them, and points on it.
+
+    With r = √(1 - α) they are (1 - r², 2(1 - r)²), a parabola. Between r₁ and r₂ it lies within the
+    triangle of its ends and the control point (1 - r₁r₂, 2(1 - r₁)(1 - r₂)).
+    """
+    squares = np.array([lowest, highest]) ** 2
+    # Root of (1 - r)² = 2rω₀².
+    ends = 1 / (1 + squares + np.sqrt(squares * (2 + squares)))
+    r = np.linspace(ends[0], ends[1], pieces + 1)
+    reached = np.stack([1 - r * r, 2 * (1 - r) ** 2], axis=1)
+    between = np.stack([1 - r[1:] * r[:-1], 2 * (1 - r[1:]) * (1 - r[:-1])], axis=1)
+    return np.concatenate([reached, between]), reached
+
+
 def _rule_conclusions(rules: RuleBase, names: list[str]) -> Array:
-    """What each rule concludes about the two outputs, shape (n_rules, 2)."""
+    """What each rule concludes about the outputs, shape (n_rules, n_outputs)."""
     operators = rules.operators
     algebra = (operators.conjunction, operators.disjunction, operators.defuzzification)
     if algebra != ("product", "sum", "weighted-centers"):
@@ -128,9 +155,9 @@ def _rule_conclusions(rules: RuleBase, names: list[str]) -> Array:
             total = sum(share for share, _ in shares)
             totals.append(total)
             row.append(sum(share * center for share, center in shares) / total if total else 0.0)
-        if abs(totals[0] - totals[1]) > 1e-12:
+        if abs(totals[0] - totals[-1]) > 1e-12:
             raise RuleBaseError(
-                f"reach 'rules' needs rules that are as sure of {names[0]} as of {names[1]}; "
+                f"reach 'rules' needs rules that are as sure of {names[0]} as of {names[-1]}; "
                 f"not so: {rule}"
             )
         if totals[0] > 0:

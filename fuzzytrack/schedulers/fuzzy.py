@@ -2,23 +2,39 @@
 
 from __future__ import annotations
 
+import inspect
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 
+# Its normalisations register themselves.
+import fuzzytrack.schedulers.noise_normalization  # noqa: F401
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.kernel import infer_function
+from fuzzytrack.fuzzy.reader import SCHEDULER_KEYS
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.gains.wdomain import bilinear
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
+from fuzzytrack.schedulers.memory import least_squares_gains
 from fuzzytrack.schedulers.normalization import Normalization, normalizations
+from fuzzytrack.yamltree import suggestion
 
 __all__ = ["FuzzyScheduler"]
 
-W_DOMAIN = ("stiffness", "damping")
-DIRECT = (("alpha", "beta"), ("alpha", "beta", "gamma"))
+# What the setting ``gains`` says, and the outputs that it needs.
+GAINS = {
+    "w-domain": (("stiffness", "damping"),),
+    "kalata": (("stiffness",),),
+    "direct": (("alpha", "beta"), ("alpha", "beta", "gamma")),
+}
+OPENINGS = ("growing-memory",)
+
+Settings = dict[str, str]
+Conversion = Callable[[tuple[float, ...]], tuple[float, float, float]]
 
 
 @schedulers.register("fuzzy")
@@ -30,9 +46,12 @@ class FuzzyScheduler(GainScheduler):
     ----------
     rules : RuleBase
         Its outputs are ``stiffness`` and ``damping`` (gains through the w-domain, always stable),
-        or ``alpha`` and ``beta``, or ``alpha``, ``beta`` and ``gamma`` (gains themselves). Its
-        scheduler settings say ``gains: w-domain`` or ``gains: direct``, and which
-        ``normalization`` feeds its inputs.
+        or ``stiffness`` alone (damping on Kalata's curve, ζ² = 1/2 + ω₀²/4), or ``alpha`` and
+        ``beta``, or ``alpha``, ``beta`` and ``gamma`` (gains themselves). Its scheduler settings
+        say which of them, ``gains: w-domain``, ``kalata`` or ``direct``; which ``normalization``
+        feeds its inputs, and, as further keys, the numbers that this takes (``rho: 0.8``); and, if
+        they say ``opening: growing-memory``, the gains of a new track are those of a line fitted
+        to all its plots, as long as their α is larger than that of the rules.
     method : {"exact", "relation", "table"}
         As for `fuzzytrack.fuzzy.system.FuzzySystem`.
 
@@ -46,7 +65,8 @@ class FuzzyScheduler(GainScheduler):
 
     Notes
     -----
-    Llinas et al. (1998), chapter 3; with a coupled normalisation, Chan's scheme.
+    Llinas et al. (1998), chapter 3; with a coupled normalisation, Chan's scheme. The memory is that
+    of the normalisation; with an opening, the number of plots stands before it.
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), chapter 3"
@@ -60,6 +80,7 @@ class FuzzyScheduler(GainScheduler):
         object.__setattr__(self, "normalization", _normalization(self.rules, settings))
         _check_gains(self.rules, settings["gains"])
         _check_range(self.rules)
+        _check_opening(settings)
         _never_silent(self.rules, self.system)
         infer_function(self.system)
 
@@ -74,31 +95,83 @@ class FuzzyScheduler(GainScheduler):
         return self.normalization.needs_sigma
 
     @property
+    def sees_every_step(self) -> bool:  # type: ignore[override]
+        """Whether all steps of a track are followed: for the normalisation, or to count plots."""
+        return self.opens or self.normalization.sees_every_step
+
+    @property
+    def opens(self) -> bool:
+        """Whether a new track has the gains of a growing memory first."""
+        return any(key == "opening" for key, _ in self.rules.scheduler)
+
+    @property
     def system(self) -> FuzzySystem:
         """The fuzzy system behind the gains, to explain and draw."""
         return FuzzySystem(self.rules, self.method)
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """Memory of the normalisation."""
-        return self.normalization.initial_memory(n_axes)
+        """Memory of the normalisation; with an opening, after the number of plots."""
+        own = self.normalization.initial_memory(n_axes)
+        return (0.0, *own) if self.opens else own
 
     def kernel(self, n_axes: int) -> Kernel:
         """Normalise, infer, convert to gains; see `GainScheduler.kernel`."""
         normalize = self.normalization.kernel(n_axes)
         infer = infer_function(self.system)
         to_gains = _conversion(self.rules)
+        feedback = self.normalization.feedback(n_axes) or _unchanged
 
         def schedule(
             innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
         ) -> tuple[float, float, float, float, Memory]:
-            signals, new_memory = normalize(innovation, change, dt, sigma, memory)
+            signals, own = normalize(innovation, change, dt, sigma, memory)
             alpha, beta, gamma = to_gains(infer(signals))
-            return alpha, beta, gamma, 1.0, new_memory
+            own = feedback(own, alpha, beta, gamma, dt, sigma)
+            return alpha, beta, gamma, 1.0, own
 
-        return schedule
+        if not self.opens:
+            return schedule
+
+        is_seen = _is_seen_on_all_axes if self.coupled else _is_seen
+        every_step = self.normalization.sees_every_step
+
+        def open_and_schedule(
+            innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
+        ) -> tuple[float, float, float, float, Memory]:
+            seen = is_seen(sigma)
+            count = memory[0] + 1.0 if seen else memory[0]
+            before = memory[1:]
+            signals, own = normalize(innovation, change, dt, sigma, before)
+            alpha, beta, gamma = to_gains(infer(signals))
+            first_alpha, first_beta = least_squares_gains(count if count > 2.0 else 2.0)
+            # Both from one source: α of one and β of the other need not be stable.
+            opening = first_alpha > alpha
+            alpha = first_alpha if opening else alpha
+            beta = first_beta if opening else beta
+            gamma = 0.0 if opening else gamma
+            own = feedback(own, alpha, beta, gamma, dt, sigma)
+            own = own if seen | every_step else before
+            return alpha, beta, gamma, 1.0, (count, *own)
+
+        return open_and_schedule
 
 
-def _settings(rules: RuleBase) -> dict[str, str]:
+def _unchanged(
+    memory: Memory, alpha: float, beta: float, gamma: float, dt: float, sigma: Any
+) -> Memory:
+    return memory
+
+
+def _is_seen(sigma: float) -> bool:
+    return sigma != math.inf
+
+
+def _is_seen_on_all_axes(sigma: tuple[float, ...]) -> bool:
+    # A plot is seen on all axes or on none.
+    return sigma[0] != math.inf
+
+
+def _settings(rules: RuleBase) -> Settings:
     settings = dict(rules.scheduler)
     for key in ("normalization", "gains"):
         if key not in settings:
@@ -113,14 +186,14 @@ def _location(word: str) -> Location | None:
     return getattr(word, "location", None)
 
 
-def _normalization(rules: RuleBase, settings: dict[str, str]) -> Normalization:
+def _normalization(rules: RuleBase, settings: Settings) -> Normalization:
     name = settings["normalization"]
     if name not in normalizations.names():
         raise RuleBaseError(
             f"unknown normalization {str(name)!r}; one of {', '.join(normalizations.names())}",
             _location(name),
         )
-    normalization: Normalization = normalizations.get(name)()
+    normalization = _made(normalizations.get(name), name, settings)
     if len(rules.inputs) > len(normalization.signals):
         raise RuleBaseError(
             f"normalization {str(name)!r} gives {len(normalization.signals)} signals "
@@ -130,13 +203,54 @@ def _normalization(rules: RuleBase, settings: dict[str, str]) -> Normalization:
     return normalization
 
 
-def _check_gains(rules: RuleBase, gains: str) -> None:
-    if gains not in ("w-domain", "direct"):
+def _made(factory: Callable[..., Normalization], name: str, settings: Settings) -> Normalization:
+    """Make the normalisation with the numbers that stand beside its name."""
+    parameters = inspect.signature(factory).parameters
+    numbers = {}
+    for key, word in settings.items():
+        if key in SCHEDULER_KEYS:
+            continue
+        if key not in parameters:
+            raise RuleBaseError(
+                f"unknown scheduler setting {str(key)!r} for normalization {str(name)!r}"
+                f"{suggestion(key, (*SCHEDULER_KEYS, *parameters))}",
+                _location(key),
+            )
+        try:
+            numbers[str(key)] = float(word)
+        except ValueError:
+            raise RuleBaseError(
+                f"{key} of normalization {str(name)!r} must be a number, got {str(word)!r}",
+                _location(word),
+            ) from None
+    missing = [key for key, p in parameters.items() if p.default is p.empty and key not in numbers]
+    if missing:
         raise RuleBaseError(
-            f"unknown gains {str(gains)!r}; one of w-domain, direct", _location(gains)
+            f"normalization {str(name)!r} needs the scheduler settings {', '.join(missing)}",
+            _location(name),
+        )
+    try:
+        return factory(**numbers)
+    except ValueError as error:
+        places = [_location(settings[key]) for key in numbers if key in str(error)]
+        raise RuleBaseError(str(error), places[0] if places else _location(name)) from error
+
+
+def _check_opening(settings: Settings) -> None:
+    opening = settings.get("opening")
+    if opening is not None and opening not in OPENINGS:
+        raise RuleBaseError(
+            f"unknown opening {str(opening)!r}; one of {', '.join(OPENINGS)}", _location(opening)
+        )
+
+
+def _check_gains(rules: RuleBase, gains: str) -> None:
+    if gains not in GAINS:
+        raise RuleBaseError(
+            f"unknown gains {str(gains)!r}; one of {', '.join(GAINS)}", _location(gains)
         )
     outputs = set(rules.output_names)
-    allowed = [set(W_DOMAIN)] if gains == "w-domain" else [set(names) for names in DIRECT]
+    allowed = [set(names) for names in GAINS[gains]]
     if outputs not in allowed:
         wanted = " or ".join(", ".join(sorted(names)) for names in allowed)
         raise RuleBaseError(
@@ -152,8 +266,8 @@ def _check_range(rules: RuleBase) -> None:
     Stiffness and damping only have to be nonnegative; α, β, γ are checked at the corners of the
     box of their universes, which holds every inferred value.
     """
-    if set(rules.output_names) == set(W_DOMAIN):
-        for name in W_DOMAIN:
+    if "stiffness" in rules.output_names:
+        for name in rules.output_names:
             least = rules.output(name).universe.low
             if least < 0:
                 raise RuleBaseError(
@@ -174,9 +288,18 @@ def _check_range(rules: RuleBase) -> None:
         )
 
 
-def _conversion(rules: RuleBase) -> Any:
+def _kalata(outputs: tuple[float, ...]) -> tuple[float, float, float]:
+    """Gains of stiffness alone: the damping at which they are optimal for some tracking index."""
+    omega0 = outputs[0]
+    alpha, beta = bilinear(omega0, math.sqrt(0.5 + 0.25 * omega0 * omega0))
+    return alpha, beta, 0.0
+
+
+def _conversion(rules: RuleBase) -> Conversion:
     """Function from the tuple of outputs to (α, β, γ)."""
     place = {name: k for k, name in enumerate(rules.output_names)}
+    if "stiffness" in place and "damping" not in place:
+        return _kalata
     if "stiffness" in place:
         stiffness, damping = place["stiffness"], place["damping"]
 

@@ -1,6 +1,7 @@
 """Normalisations: from an innovation in metres to the inputs of a rule base.
 
-A normalisation is written like a scheduler's kernel: one scalar function with its own memory.
+A normalisation is written like a scheduler's kernel: one scalar function with its own memory. Those
+that need the noise level are in `fuzzytrack.schedulers.noise_normalization`.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from fuzzytrack.gains.checks import finite
 from fuzzytrack.plugins import Registry
 from fuzzytrack.schedulers.base import Memory
 
@@ -19,16 +19,17 @@ __all__ = [
     "Chan",
     "ChanMagnitude",
     "ChanSigned",
+    "Feedback",
     "Normalization",
     "Normalize",
-    "Scale",
-    "Smoothed",
-    "SmoothedMagnitude",
     "normalizations",
 ]
 
 #: ``normalize(innovation, change, dt, sigma, memory) -> (signals, memory)``
 Normalize = Callable[[Any, Any, float, Any, Memory], tuple[tuple[float, ...], Memory]]
+
+#: ``feedback(memory, alpha, beta, gamma, dt, sigma) -> memory``
+Feedback = Callable[[Memory, float, float, float, float, Any], Memory]
 
 
 class Normalization(ABC):
@@ -40,14 +41,22 @@ class Normalization(ABC):
         Paper, or other origin.
     signals : tuple of str
         What the kernel returns, in order; a rule base takes its inputs from them, first to first.
-    coupled, needs_sigma : bool
+    coupled, needs_sigma, sees_every_step : bool
         As for a `fuzzytrack.schedulers.base.GainScheduler`.
+
+    Notes
+    -----
+    The numbers that its constructor takes may stand beside its name in the scheduler settings of a
+    rule base.
+    Where the rule base opens with a growing memory, also one that does not see every step is called
+    with zeros at the first plot of a track, and at the second if velocity starts from it.
     """
 
     source: ClassVar[str] = ""
     signals: ClassVar[tuple[str, ...]] = ()
     coupled: ClassVar[bool] = False
     needs_sigma: ClassVar[bool] = False
+    sees_every_step: ClassVar[bool] = False
 
     @abstractmethod
     def kernel(self, n_axes: int) -> Normalize:
@@ -56,6 +65,14 @@ class Normalization(ABC):
     @abstractmethod
     def initial_memory(self, n_axes: int) -> Memory:
         """Memory of a new track."""
+
+    def feedback(self, n_axes: int) -> Feedback | None:
+        """Scalar function from the gains that were chosen to the memory; None unless overridden.
+
+        It is called after inference, with the memory that the kernel returned and the gains for the
+        same plot; at steps whose gains are dropped too, if the normalisation sees every step.
+        """
+        return None
 
 
 normalizations: Registry[type[Normalization]] = Registry(
@@ -205,158 +222,3 @@ class ChanMagnitude(Normalization):
             return (math.sqrt(errors / n_axes), math.sqrt(rates / n_axes)), new_memory
 
         return chan_magnitude
-
-
-@normalizations.register("scale")
-@dataclass(frozen=True)
-class Scale(Normalization):
-    """Innovation over the standard deviation of the plot, and its change since the last update.
-
-    E = e/σ and ΔE = E - E′ (E′ = 0 at first). Unbounded: a rule base takes values outside its
-    universe at the nearest end.
-    """
-
-    source: ClassVar[str] = "innovation scaled by measurement noise"
-    signals: ClassVar[tuple[str, ...]] = ("scaled innovation", "change of scaled innovation")
-    needs_sigma: ClassVar[bool] = True
-
-    def initial_memory(self, n_axes: int) -> Memory:
-        """Previous scaled innovation, 0."""
-        return (0.0,)
-
-    def kernel(self, n_axes: int) -> Normalize:
-        """See `Normalization.kernel`."""
-
-        def scale(
-            innovation: float, change: float, dt: float, sigma: float, memory: Memory
-        ) -> tuple[tuple[float, ...], Memory]:
-            error = innovation / sigma
-            return (error, error - memory[0]), (error,)
-
-        return scale
-
-
-def _check_rho(rho: float) -> float:
-    value = float(finite("rho", rho))
-    if not 0 <= value < 1:
-        raise ValueError(f"rho must be >= 0 and < 1, got {value:g}")
-    return value
-
-
-@normalizations.register("smoothed")
-@dataclass(frozen=True)
-class Smoothed(Normalization):
-    """Exponentially smoothed innovation over the standard deviation of the plot, axis by axis.
-
-    s = ρs′ + (1 - ρ)e/σ, with s′ the s of the update before (0 at first), and e/σ itself as the
-    second signal. Noise averages out of s and a lag behind the target does not, so s tells a
-    manoeuvre from noise, which the single innovation cannot. Unbounded: a rule base takes values
-    outside its universe at the nearest end.
-
-    Parameters
-    ----------
-    rho : float
-        ρ, from 0 (no smoothing) to below 1. A rule base names the normalisation and so has the
-        default; for another ρ register a function that makes it under a name of your own.
-
-    Raises
-    ------
-    ValueError
-        If `rho` is out of range.
-    """
-
-    source: ClassVar[str] = "innovation scaled by measurement noise, exponentially smoothed"
-    signals: ClassVar[tuple[str, ...]] = ("smoothed scaled innovation", "scaled innovation")
-    needs_sigma: ClassVar[bool] = True
-
-    rho: float = 0.774
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rho", _check_rho(self.rho))
-
-    def initial_memory(self, n_axes: int) -> Memory:
-        """Smoothed innovation, 0."""
-        return (0.0,)
-
-    def kernel(self, n_axes: int) -> Normalize:
-        """See `Normalization.kernel`."""
-        rho, new = self.rho, 1.0 - self.rho
-
-        def smoothed(
-            innovation: float, change: float, dt: float, sigma: float, memory: Memory
-        ) -> tuple[tuple[float, ...], Memory]:
-            error = innovation / sigma
-            mean = rho * memory[0] + new * error
-            return (mean, error), (mean,)
-
-        return smoothed
-
-
-def _sum_of_smoothed(n_axes: int, rho: float) -> Squares:
-    """Σs² and Σ(e/σ)² over the first axes, with the new s; built up as `_sum_of_squares`."""
-    if n_axes == 0:
-
-        def nothing(innovation: Any, sigma: Any, memory: Memory) -> tuple[float, float, Memory]:
-            return 0.0, 0.0, ()
-
-        return nothing
-
-    before = _sum_of_smoothed(n_axes - 1, rho)
-    last, new = n_axes - 1, 1.0 - rho
-
-    def one_more(innovation: Any, sigma: Any, memory: Memory) -> tuple[float, float, Memory]:
-        means, errors, means_so_far = before(innovation, sigma, memory)
-        error = innovation[last] / sigma[last]
-        mean = rho * memory[last] + new * error
-        return means + mean * mean, errors + error * error, (*means_so_far, mean)
-
-    return one_more
-
-
-@normalizations.register("smoothed-magnitude")
-@dataclass(frozen=True)
-class SmoothedMagnitude(Normalization):
-    """Root mean square of the smoothed scaled innovations over the axes of a track.
-
-    The root of Σsᵢ²/n, with sᵢ as in `Smoothed`, and that of Σ(eᵢ/σᵢ)²/n. Coupled: one set of gains
-    for all axes.
-
-    Parameters
-    ----------
-    rho : float
-        As for `Smoothed`.
-
-    Raises
-    ------
-    ValueError
-        If `rho` is out of range.
-    """
-
-    source: ClassVar[str] = "innovation scaled by measurement noise, exponentially smoothed"
-    signals: ClassVar[tuple[str, ...]] = (
-        "magnitude of smoothed scaled innovation",
-        "magnitude of scaled innovation",
-    )
-    coupled: ClassVar[bool] = True
-    needs_sigma: ClassVar[bool] = True
-
-    rho: float = 0.774
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rho", _check_rho(self.rho))
-
-    def initial_memory(self, n_axes: int) -> Memory:
-        """Smoothed innovation of each axis, 0."""
-        return (0.0,) * n_axes
-
-    def kernel(self, n_axes: int) -> Normalize:
-        """See `Normalization.kernel`."""
-        sum_of_smoothed = _sum_of_smoothed(n_axes, self.rho)
-
-        def smoothed_magnitude(
-            innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
-        ) -> tuple[tuple[float, ...], Memory]:
-            means, errors, new_memory = sum_of_smoothed(innovation, sigma, memory)
-            return (math.sqrt(means / n_axes), math.sqrt(errors / n_axes)), new_memory
-
-        return smoothed_magnitude

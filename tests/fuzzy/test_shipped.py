@@ -43,6 +43,7 @@ def test_the_set_of_shipped_rule_bases():
     assert set(shipped_rulebases()) == {
         *FAMILY,
         "chan-style",
+        "omega-schedule",
         "tipper",
         "valve",
         "valve-confidence",

@@ -16,6 +16,7 @@ from fuzzytrack.schedulers.certificate import certify, reachable_gains
         ("stiffness-damping-cog", "universe", "certified", 0.815936),
         ("stiffness-damping-wide", "universe", "refuted", 1.516598),
         ("stiffness-damping-wide", "rules", "refuted", 1.364012),
+        ("omega-schedule", "universe", "certified", 0.836665),
     ],
 )
 def test_shipped_rule_bases(name, reach, verdict, rate):
@@ -44,6 +45,30 @@ def test_everything_that_is_scheduled_lies_in_the_hull(reach):
     # Corners of the table lie on the hull itself.
     middle = hull.points.mean(axis=0)
     assert (hull.find_simplex(middle + (points - middle) * (1 - 1e-9)) >= 0).all()
+
+
+@pytest.mark.parametrize("reach", ["universe", "rules"])
+def test_kalatas_curve_lies_in_the_hull(reach):
+    from scipy.spatial import Delaunay
+
+    rules = ft.load_rulebase("omega-schedule")
+    corners = reachable_gains(rules, reach)
+    # ω₀ = √λ/2
+    curve = np.stack(ft.gains.kalata((2 * np.linspace(0.29, 0.778, 500)) ** 2), axis=1)
+    hull = Delaunay(corners)
+    middle = hull.points.mean(axis=0)
+    assert (hull.find_simplex(middle + (curve - middle) * (1 - 1e-9)) >= 0).all()
+    # It is no larger than needed: its corners are next to the curve, or on it.
+    apart = np.linalg.norm(corners[:, None] - curve, axis=2).min(axis=1)
+    assert apart.max() < 2e-3
+
+
+def test_an_output_that_reaches_zero_stiffness():
+    rules = ft.load_rulebase("omega-schedule")
+    stiffness = replace(rules.outputs[0], universe=replace(rules.outputs[0].universe, low=0.0))
+    corners = reachable_gains(replace(rules, outputs=(stiffness,)))
+    assert corners.min() == 0
+    assert np.abs(corners - reachable_gains(rules, "rules")[:, None]).max() > 0.3
 
 
 def test_a_default_is_reached_too():

@@ -1,5 +1,5 @@
 import pickle
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -7,6 +7,8 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.variable import Universe, Variable
+from fuzzytrack.schedulers import normalizations
+from fuzzytrack.schedulers.normalization import Chan
 from fuzzytrack.testing import check_scheduler
 
 
@@ -103,7 +105,25 @@ def test_unstable_reach_is_refused(rules):
             "unknown normalization 'chann'; one of",
         ),
         ("gains: w-domain", "gains: direct", "gains 'direct' need outputs alpha, beta or alpha"),
-        ("gains: w-domain", "gains: w", "unknown gains 'w'; one of w-domain, direct"),
+        ("gains: w-domain", "gains: w", "unknown gains 'w'; one of w-domain, kalata, direct"),
+        ("gains: w-domain", "gains: kalata", "gains 'kalata' need outputs stiffness; stiffness-d"),
+        ("w-domain}", "w-domain, opening: fast}", "unknown opening 'fast'; one of growing-memory"),
+        (
+            "w-domain}",
+            "w-domain, rho: 0.5}",
+            "unknown scheduler setting 'rho' for normalization 'chan'; allowed: normalization, "
+            "gains, opening",
+        ),
+        (
+            "chan, gains: w-domain}",
+            "smoothed, gains: w-domain, roh: 0.5}",
+            "unknown scheduler setting 'roh' .* did you mean 'rho'?",
+        ),
+        (
+            "chan, gains: w-domain}",
+            "smoothed, gains: w-domain, rho: 1.5}",
+            "rho must be >= 0 and < 1, got 1.5",
+        ),
     ],
 )
 def test_wrong_settings_are_shown_where_they_stand(rules, old, new, message):
@@ -113,6 +133,61 @@ def test_wrong_settings_are_shown_where_they_stand(rules, old, new, message):
     assert caught.value.location.file == "my.yaml"
     assert caught.value.location.line > 40
     assert str(caught.value).startswith(f"my.yaml:{caught.value.location.line}:")
+
+
+def test_the_place_of_a_wrong_number_is_its_own(rules):
+    wrong = changed(rules, "chan, gains: w-domain}", "smoothed, gains: w-domain, rho: 1.5}")
+    with pytest.raises(ft.RuleBaseError) as caught:
+        ft.FuzzyScheduler(wrong)
+    line = dumps_rulebase(wrong).splitlines()[caught.value.location.line - 1]
+    assert line[caught.value.location.column - 1 :] == "1.5}"
+
+
+def test_numbers_of_the_normalisation(rules):
+    with_rho = changed(rules, "chan, gains: w-domain}", "smoothed, rho: 0.25, gains: w-domain}")
+    assert ft.FuzzyScheduler(with_rho).normalization.rho == 0.25
+    *_, memory = ft.FuzzyScheduler(with_rho).kernel(1)(8.0, 0.0, 1.0, 2.0, (1.0,))
+    assert memory == (0.25 * 1 + 0.75 * 4,)
+    assert ft.loads_rulebase(dumps_rulebase(with_rho)) == with_rho
+    assert "rho: 0.25," in dumps_rulebase(with_rho)
+    settings = (*rules.scheduler, ("rho", "half"))
+    with pytest.raises(ft.RuleBaseError, match="unknown scheduler setting 'rho'"):
+        ft.FuzzyScheduler(replace(rules, scheduler=settings))
+    settings = (("normalization", "smoothed"), ("gains", "w-domain"), ("rho", "half"))
+    with pytest.raises(ft.RuleBaseError, match="rho of normalization 'smoothed' must be a number"):
+        ft.FuzzyScheduler(replace(rules, scheduler=settings))
+
+
+@pytest.mark.parametrize(
+    ("settings", "word"),
+    [
+        ("{normalization: smoothed, gain: w-domain}", "gain"),
+        ("{gains: w-domain, rho: 0.5}", "rho"),
+        ("{normalization: smoothed, rho-1: 0.5, gains: w-domain}", "rho-1"),
+    ],
+)
+def test_keys_that_no_scheduler_could_take_are_refused_on_loading(rules, settings, word):
+    old = "{normalization: chan, gains: w-domain}"
+    with pytest.raises(ft.RuleBaseError, match=f"unknown key in scheduler: '{word}'") as caught:
+        changed(rules, old, settings)
+    assert "allowed: normalization, gains, opening" in str(caught.value)
+    assert caught.value.location.file == "my.yaml"
+
+
+def test_a_number_that_a_normalisation_lacks(rules):
+    @dataclass(frozen=True)
+    class Limited(Chan):
+        limit: float
+
+    normalizations.register("limited")(Limited)
+    try:
+        without = changed(rules, "normalization: chan", "normalization: limited")
+        with pytest.raises(ft.RuleBaseError, match="'limited' needs the scheduler settings limit"):
+            ft.FuzzyScheduler(without)
+        given = changed(rules, "normalization: chan", "normalization: limited, limit: -2")
+        assert ft.FuzzyScheduler(given).normalization == Limited(-2.0)
+    finally:
+        normalizations.unregister("limited")
 
 
 def test_a_rule_base_without_settings_cannot_schedule():

@@ -1,21 +1,15 @@
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fuzzytrack import FuzzyScheduler, loads_rulebase
 from fuzzytrack.schedulers import normalizations
 from fuzzytrack.schedulers.normalization import (
     Chan,
     ChanMagnitude,
     ChanSigned,
-    Scale,
-    Smoothed,
-    SmoothedMagnitude,
     relative,
     relative_signed,
 )
-from fuzzytrack.testing import check_scheduler
 
 metres = st.floats(-1e6, 1e6)
 unit = st.floats(-1, 1)
@@ -96,69 +90,9 @@ def test_chan_magnitude_is_the_root_mean_square_of_chan(axes):
     assert ChanMagnitude().initial_memory(n) == (0.0,) * n
 
 
-def test_scale_divides_by_the_standard_deviation():
-    (error, rate), memory = signals(Scale(), 6.0, 100.0, (0.5,), sigma=2.0)
-    assert (error, rate, memory) == (3.0, 2.5, (3.0,))
-
-
-@given(st.lists(st.tuples(st.floats(-1e3, 1e3), st.floats(0.1, 1e3)), min_size=1, max_size=30),
-       st.floats(0, 0.99))  # fmt: skip
-def test_smoothed_is_a_weighted_mean_of_scaled_innovations(plots, rho):
-    memory = Smoothed(rho).initial_memory(1)
-    for innovation, sigma in plots:
-        (mean, error), memory = signals(Smoothed(rho), innovation, 1.0, memory, sigma)
-        assert error == innovation / sigma
-    scaled = np.array([e / s for e, s in plots])
-    weights = (1 - rho) * rho ** np.arange(len(plots))[::-1]
-    assert mean == pytest.approx(weights @ scaled, rel=1e-9, abs=1e-9)
-    assert memory == (mean,)
-
-
-@given(st.lists(st.tuples(metres, st.floats(0.1, 1e3), unit), min_size=1, max_size=4))
-def test_smoothed_magnitude_is_the_root_mean_square_of_smoothed(axes):
-    innovations, sigmas, before = zip(*axes, strict=True)
-    alone = [signals(Smoothed(), e, 1.0, (b,), s)[0] for e, s, b in axes]
-    n = len(axes)
-    (mean, error), memory = signals(
-        SmoothedMagnitude(), innovations, (1.0,) * n, before, sigmas, n)  # fmt: skip
-    assert mean == pytest.approx(np.sqrt(np.mean([m * m for m, _ in alone])))
-    assert error == pytest.approx(np.sqrt(np.mean([e * e for _, e in alone])))
-    assert memory == tuple(m for m, _ in alone)
-    assert SmoothedMagnitude().initial_memory(n) == (0.0,) * n
-
-
-@pytest.mark.parametrize("rho", [-0.1, 1.0])
-@pytest.mark.parametrize("normalization", [Smoothed, SmoothedMagnitude])
-def test_the_smoothing_is_checked(normalization, rho):
-    with pytest.raises(ValueError, match=f"rho must be >= 0 and < 1, got {rho:g}"):
-        normalization(rho)
-
-
-@pytest.mark.parametrize("name", ["smoothed", "smoothed-magnitude"])
-def test_a_rule_base_on_a_smoothed_signal_keeps_the_contract(name):
-    text = f"""
-rulebase: 1
-name: by-lag
-inputs:
-  lag: {{universe: [-3, 3, 61], sets: {{left: {{trimf: [-3, -3, 0]}},
-        small: {{trimf: [-3, 0, 3]}}, right: {{trimf: [0, 3, 3]}}}}}}
-outputs:
-  alpha: {{universe: [0.2, 0.8, 61], sets: {{low: {{trimf: [0.2, 0.2, 0.8]}},
-          high: {{trimf: [0.2, 0.8, 0.8]}}}}}}
-  beta: {{universe: [0.05, 0.5, 46], sets: {{low: {{trimf: [0.05, 0.05, 0.5]}},
-         high: {{trimf: [0.05, 0.5, 0.5]}}}}}}
-operators: {{and: product, or: sum, defuzzification: weighted-centers}}
-rules:
-  - {{if: {{lag: small}}, then: {{alpha: low, beta: low}}}}
-  - {{if: {{lag: left}}, then: {{alpha: high, beta: high}}}}
-  - {{if: {{lag: right}}, then: {{alpha: high, beta: high}}}}
-scheduler: {{normalization: {name}, gains: direct}}
-"""
-    check_scheduler(FuzzyScheduler(loads_rulebase(text)))
-
-
 def test_registered_normalisations():
-    names = {"chan", "chan-signed", "chan-magnitude", "scale", "smoothed", "smoothed-magnitude"}
+    names = {"chan", "chan-signed", "chan-magnitude"}
+    names |= {"predicted", "scale", "smoothed", "smoothed-magnitude"}
     assert names <= set(normalizations.names())
     for plugin in normalizations:
         assert plugin.source
