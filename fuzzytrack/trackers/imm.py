@@ -1,0 +1,213 @@
+"""Interacting multiple models: a quiet and a maneuvering Kalman filter that share their states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.gains.checks import nonnegative, number, positive, within
+from fuzzytrack.trackers.base import trackers
+from fuzzytrack.trackers.imm_recursion import MODEL, PROBABILITIES, imm_rows, step_function
+from fuzzytrack.trackers.lanes import LaneTracker
+from fuzzytrack.trackers.runner import Recursion
+from fuzzytrack.trackers.state import TrackState
+
+__all__ = ["MANEUVERS", "InteractingModels"]
+
+Array = NDArray[np.float64]
+
+MANEUVERS = ("ca", "cv")
+
+
+@trackers.register("imm")
+@dataclass(frozen=True)
+class InteractingModels(LaneTracker):
+    """Two Kalman filters, for a quiet and for a maneuvering target, and the odds between them.
+
+    The quiet model is `fuzzytrack.schedulers.KalmanCV`, the maneuvering one the same with more
+    noise, or `fuzzytrack.schedulers.KalmanCA`. From step to step the target keeps to a model with a
+    given probability. Each filter starts a step from a mixture of both estimates, and each plot
+    shifts the odds to the filter that foresaw it better. Estimates are means over the models.
+
+    Parameters
+    ----------
+    quiet_sigma : float
+        Standard deviation of the acceleration of a quiet target (m/s²), drawn anew for each step,
+        >= 0.
+    maneuver_sigma : float
+        The same of a maneuvering one; with `maneuver` "ca" of the change of its acceleration at a
+        step (m/s²). > 0.
+    quiet_stay, maneuver_stay : float
+        Probability, 0 to 1, that a target keeps to its model for a step, however long the step.
+    maneuver : {"ca", "cv"}
+        Nearly constant acceleration, or nearly constant velocity.
+    joint : bool
+        Whether the axes of a track share their probabilities: the likelihood of a plot is then the
+        product over its axes. Otherwise each axis is by itself.
+    sigma_w : float, optional
+        Standard deviation of all plots (m), > 0. Unless given, each plot brings its own.
+    velocity_sigma : float, optional
+        Standard deviation of a new track's velocity (m/s), > 0, about 0. Unless given, nothing is
+        presumed of the velocity: it comes from the first two plots.
+    acceleration_sigma : float, optional
+        Standard deviation of a new track's acceleration (m/s²) if it maneuvers, >= 0, about 0; that
+        of one step, `maneuver_sigma`, unless given. Only with `maneuver` "ca".
+    maneuver_start : float, optional
+        Probability, 0 to 1, that a new track maneuvers; the one in the long run unless given, and
+        ½ where there is none.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of its range, unknown, or does not go with `maneuver`.
+
+    Notes
+    -----
+    Bar-Shalom, Li & Kirubarajan (2001), section 11.6.6. At a missed plot the models mix and
+    coast, and the probabilities go on as the chain says. Irregular times and a noise that varies
+    from plot to plot are followed exactly; Joseph form. Each axis has its own covariance: the
+    correlation that mixing joint axes would bring between them is left out. Models neither mix nor
+    are compared before velocity is known. No plot takes a probability below 1e-12, unless a new
+    track's are 0 and 1.
+
+    Next to a constant acceleration, the quiet model has acceleration 0 with variance 0: both are
+    mixed into the maneuvering model, and what is mixed into the quiet one of acceleration is
+    dropped by its prediction.
+
+    The gains of a result are means over the models with the probabilities after the plot, and over
+    axes if joint: α = Σμ K₁, β = Σμ K₂T, γ = 2 Σμ K₃T². They show how the tracker responded; since
+    the models differ in their innovations, the recursion of `fuzzytrack.AlphaBetaTracker` with
+    these gains is not quite the same track.
+
+    The memory of a lane is the probabilities of the quiet and the maneuvering model, and, axis by
+    axis, for either model (x, v, a, P₁₁, P₁₂, P₁₃, P₂₂, P₂₃, P₃₃).
+
+    Examples
+    --------
+    >>> from fuzzytrack.trackers.imm import InteractingModels
+    >>> tracker = InteractingModels(0.1, 2.0, sigma_w=1.0)
+    >>> result = tracker.run([0, 1, 2, 3, 4, 5], [0, 10, 20, 30, 43, 59])
+    >>> result.predicted.round(2)
+    array([  nan,   nan, 20.  , 30.  , 40.  , 53.67])
+    >>> round(float(tracker.maneuver_probability(result.state)), 2)
+    0.99
+    """
+
+    source: ClassVar[str] = "Bar-Shalom, Li & Kirubarajan (2001), section 11.6.6"
+
+    quiet_sigma: float
+    maneuver_sigma: float
+    quiet_stay: float = 0.95
+    maneuver_stay: float = 0.9
+    maneuver: str = "ca"
+    joint: bool = True
+    sigma_w: float | None = None
+    velocity_sigma: float | None = None
+    acceleration_sigma: float | None = None
+    maneuver_start: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.maneuver not in MANEUVERS:
+            raise ValueError(f"maneuver: unknown {self.maneuver!r}; one of {', '.join(MANEUVERS)}")
+        if self.acceleration_sigma is not None and self.maneuver != "ca":
+            raise ValueError("acceleration_sigma: only a model 'ca' has an acceleration to start")
+        for check, names in (
+            (nonnegative, ("quiet_sigma", "acceleration_sigma")),
+            (positive, ("maneuver_sigma", "sigma_w", "velocity_sigma")),
+            (_probability, ("quiet_stay", "maneuver_stay", "maneuver_start")),
+        ):
+            for name in names:
+                if (value := getattr(self, name)) is not None:
+                    object.__setattr__(self, name, number(name, check(name, value)))
+
+    @property
+    def coupled(self) -> bool:  # type: ignore[override]
+        """Whether a lane is a whole track: if joint."""
+        return self.joint
+
+    @property
+    def needs_sigma(self) -> bool:  # type: ignore[override]
+        """Whether plots need a standard deviation: unless `sigma_w` stands for all."""
+        return self.sigma_w is None
+
+    @property
+    def start_probability(self) -> float:
+        """Probability that a new track maneuvers: `maneuver_start`, or what stands for it."""
+        if self.maneuver_start is not None:
+            return self.maneuver_start
+        leave, settle = 1.0 - self.quiet_stay, 1.0 - self.maneuver_stay
+        return leave / (leave + settle) if leave + settle > 0.0 else 0.5
+
+    def recursion(self, n_axes: int) -> Recursion:
+        """The arithmetic of a lane; see `LaneTracker.recursion`."""
+        rows = imm_rows(n_axes)
+        start = self.start_probability
+        memory = (1.0 - start, start, *(0.0,) * (rows.n_memory - PROBABILITIES))
+        return Recursion(rows, memory, lambda block: step_function(self, rows, block))
+
+    def maneuver_probability(self, state: TrackState) -> Array:
+        """Probability that the target maneuvers.
+
+        Parameters
+        ----------
+        state : TrackState
+            From this tracker.
+
+        Returns
+        -------
+        ndarray
+            Shape (...batch), () for a track alone; of a tracker that is not joint, shape of a plot.
+
+        Raises
+        ------
+        ValueError
+            If the state is that of another kind of tracker.
+        """
+        self._check(state)
+        shape = state.shape[:-1] if self.joint else state.shape
+        probability: Array = state.lanes[state.rows.memory + 1].reshape(shape)
+        return probability
+
+    def position_variance(self, state: TrackState) -> Array:
+        """Variance of the position: that of the models, and the spread between them.
+
+        For a gate about a plot to come, do a `step` with a missed one (NaN) to its time: the state
+        is then the prediction.
+
+        Parameters
+        ----------
+        state : TrackState
+            From this tracker.
+
+        Returns
+        -------
+        ndarray
+            Variance (m²), shaped as a plot; NaN before the first plot.
+
+        Raises
+        ------
+        ValueError
+            If the state is that of another kind of tracker.
+        """
+        self._check(state)
+        rows = state.rows
+        memory = state.lanes[rows.memory : rows.state]
+        quiet, maneuver = memory[:PROBABILITIES]
+        models = memory[PROBABILITIES:].reshape(rows.n_axes, 2, MODEL, memory.shape[1])
+        apart = models[:, 1, 0] - models[:, 0, 0]
+        variance = quiet * models[:, 0, 3] + maneuver * (models[:, 1, 3] + quiet * apart**2)
+        variance = np.where(np.isnan(state.lanes[: rows.n_axes]), np.nan, variance)
+        return variance.T.reshape(state.shape)
+
+    def _check(self, state: TrackState) -> None:
+        n_axes = state.rows.n_axes if self.joint else 1
+        if state.rows != imm_rows(n_axes):
+            raise ValueError("state: it comes from a tracker that remembers other things")
+
+
+def _probability(name: str, value: float) -> Array:
+    array = np.asarray(value, dtype=np.float64)
+    return within(name, array, np.asarray((array >= 0) & (array <= 1)), "a probability, 0 to 1")
