@@ -14,7 +14,9 @@ LAYERS = [
     {"gains", "fuzzy"},
     {"schedulers"},
     {"trackers"},
-    {"testbed", "io", "plotting", "testing"},
+    {"io", "plotting", "testing"},
+    {"testbed"},
+    {"papers"},
     {"cli"},
 ]
 LEVEL = {room: level for level, rooms in enumerate(LAYERS) for room in rooms}

@@ -8,6 +8,12 @@ A figure that a function makes belongs to pyplot, as with other libraries, and i
 """
 
 from fuzzytrack.plotting.circle import plot_circle_cost, plot_circle_gains
+from fuzzytrack.plotting.experiments import (
+    plot_consistency,
+    plot_error_distribution,
+    plot_error_over_time,
+    plot_trajectories,
+)
 from fuzzytrack.plotting.gain_plane import plot_gain_plane
 from fuzzytrack.plotting.memberships import plot_memberships
 from fuzzytrack.plotting.noise import plot_noise_against_lag, plot_noise_ratio, plot_noise_surfaces
@@ -19,6 +25,9 @@ from fuzzytrack.plotting.tracks import plot_errors, plot_track
 __all__ = [
     "plot_circle_cost",
     "plot_circle_gains",
+    "plot_consistency",
+    "plot_error_distribution",
+    "plot_error_over_time",
     "plot_errors",
     "plot_gain_plane",
     "plot_gain_surfaces",
@@ -34,4 +43,5 @@ __all__ = [
     "plot_stability_volume",
     "plot_surface",
     "plot_track",
+    "plot_trajectories",
 ]

@@ -2,9 +2,12 @@
 
 from fuzzytrack.testbed.comparison import Comparison, compare, compare_tracks
 from fuzzytrack.testbed.fusion import fuse, fuse_pair
+from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.noise import Noise, Plots, noisy_plots
 from fuzzytrack.testbed.published import TrackSet, kim_lee, llinas_maneuver, s3, track_set, warship
 from fuzzytrack.testbed.ragged import run_tracks
+from fuzzytrack.testbed.results import Results
+from fuzzytrack.testbed.scenario import FieldSensors, PlotNoise, Scenario
 from fuzzytrack.testbed.sensor_field import SensorField, canonical_field, sensor_grid
 from fuzzytrack.testbed.starting import prepare_start
 from fuzzytrack.testbed.trajectories import (
@@ -18,8 +21,12 @@ from fuzzytrack.testbed.trajectories import (
 
 __all__ = [
     "Comparison",
+    "FieldSensors",
     "Noise",
+    "PlotNoise",
     "Plots",
+    "Results",
+    "Scenario",
     "SensorField",
     "TrackSet",
     "canonical_field",
@@ -31,6 +38,7 @@ __all__ = [
     "fuse_pair",
     "kim_lee",
     "llinas_maneuver",
+    "monte_carlo",
     "noisy_plots",
     "prepare_start",
     "run_tracks",

@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Results", "Sample"]
+from fuzzytrack.gains.checks import number, positive
+from fuzzytrack.testbed import metrics
+from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["QUANTITIES", "Quantity", "Results", "Sample"]
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: What a tracker's errors are of.
+Quantity = Literal["predicted", "filtered", "velocity"]
+QUANTITIES: tuple[Quantity, ...] = ("predicted", "filtered", "velocity")
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +53,11 @@ class Sample:
 class Results:
     """Errors of trackers over Monte Carlo runs; every tracker saw the same plots.
 
+    A scan counts from `first_scored` on where every tracker has a prediction, coasted or not: all
+    are scored on the same scans. Errors are distances over all axes. Where a method takes a
+    `quantity` it is ``"predicted"``, ``"filtered"`` (both m) or ``"velocity"`` (m/s). Standard
+    errors are those over runs, see `fuzzytrack.testbed.metrics`; NaN is what is not known.
+
     Attributes
     ----------
     scenario : str
@@ -61,7 +80,8 @@ class Results:
         Plot minus true position (m); NaN where missed.
     nis, nees : ndarray, shape (n_trackers, runs, n_steps), or None
         Normalised innovation squared, and normalised estimation error squared of position, summed
-        over axes, where the scenario presumes a `process_sigma`.
+        over axes, where the scenario presumes a `process_sigma`; NaN for runs of a tracker whose
+        covariance that alone does not tell (γ, one-point start, a recursion of its own).
     sample : Sample
         Run 0 in full.
     """
@@ -78,3 +98,262 @@ class Results:
     nis: Array | None
     nees: Array | None
     sample: Sample
+
+    @property
+    def runs(self) -> int:
+        """Number of Monte Carlo runs."""
+        return len(self.measured)
+
+    # ---------------------------------------------------------------- distances
+
+    @cached_property
+    def predicted_distance(self) -> Array:
+        """Distance between predicted and true position (m), shape (n_trackers, runs, n_steps)."""
+        return metrics.distance(self.predicted)
+
+    @cached_property
+    def filtered_distance(self) -> Array:
+        """Distance between filtered and true position (m), shape (n_trackers, runs, n_steps)."""
+        return metrics.distance(self.filtered)
+
+    @cached_property
+    def velocity_distance(self) -> Array | None:
+        """Length of the error of velocity (m/s), shape (n_trackers, runs, n_steps)."""
+        return None if self.velocity is None else metrics.distance(self.velocity)
+
+    @cached_property
+    def compared(self) -> Mask:
+        """Scans in which every tracker has a prediction, shape (runs, n_steps)."""
+        return metrics.compared(self.predicted_distance)
+
+    @cached_property
+    def scored(self) -> Mask:
+        """Scans that count: compared ones from `first_scored` on, shape (runs, n_steps)."""
+        return self.compared & (np.arange(len(self.time)) >= self.first_scored)
+
+    @property
+    def scored_scans(self) -> NDArray[np.int64]:
+        """Number of scans that count, shape (runs,)."""
+        return np.asarray(self.scored.sum(axis=1))
+
+    @property
+    def empty_runs(self) -> int:
+        """Number of runs in which no scan counts; they are left out of everything."""
+        return int((self.scored_scans == 0).sum())
+
+    @property
+    def unstarted_runs(self) -> NDArray[np.int64]:
+        """Number of runs in which a tracker predicts no scan that could count, (n_trackers,)."""
+        unknown = np.isnan(self.predicted_distance[:, :, self.first_scored :])
+        return np.asarray(unknown.all(axis=2).sum(axis=1))
+
+    # ---------------------------------------------------------------- pooled over runs and scans
+
+    def mean_error(self, quantity: Quantity = "predicted") -> Array:
+        """Mean distance, pooled over runs and scans, shape (n_trackers,).
+
+        Notes
+        -----
+        Llinas et al. (1998), section 5.2, as `error_variance`: mean and variance of the distance
+        between prediction and truth.
+        """
+        return metrics.mean(self._distance(quantity), self.scored).value
+
+    def mean_error_se(self, quantity: Quantity = "predicted") -> Array:
+        """Standard error of `mean_error`."""
+        return metrics.mean(self._distance(quantity), self.scored).error
+
+    def error_variance(self, quantity: Quantity = "predicted") -> Array:
+        """Variance of the distance about `mean_error`, pooled as it is, shape (n_trackers,)."""
+        return metrics.variance(self._distance(quantity), self.scored).value
+
+    def error_variance_se(self, quantity: Quantity = "predicted") -> Array:
+        """Standard error of `error_variance`."""
+        return metrics.variance(self._distance(quantity), self.scored).error
+
+    def rmse(self, quantity: Quantity = "predicted") -> Array:
+        """Root mean square distance, pooled over runs and scans, shape (n_trackers,)."""
+        return metrics.root(self._squares(quantity), self.scored).value
+
+    def rmse_se(self, quantity: Quantity = "predicted") -> Array:
+        """Standard error of `rmse`."""
+        return metrics.root(self._squares(quantity), self.scored).error
+
+    def rmse_per_axis(self, quantity: Quantity = "predicted") -> Array:
+        """Root mean square error on each axis, shape (n_trackers, n_axes)."""
+        squares = np.square(np.moveaxis(self._errors(quantity), -1, 1))
+        return metrics.root(squares, self.scored).value
+
+    @property
+    def measured_rmse(self) -> float:
+        """Root mean square distance between plot and truth in the scans that count (m)."""
+        squares = np.square(metrics.distance(self.measured))
+        return float(metrics.root(squares, self.scored).value)
+
+    def cumulative(self, quantity: Quantity = "predicted") -> Array:
+        """Distance summed over the scans of a run, mean over runs, shape (n_trackers,)."""
+        return metrics.cumulative(self._distance(quantity), self.scored).value
+
+    def cumulative_se(self, quantity: Quantity = "predicted") -> Array:
+        """Standard error of `cumulative`."""
+        return metrics.cumulative(self._distance(quantity), self.scored).error
+
+    # ---------------------------------------------------------------- scan by scan
+
+    def rmse_per_scan(self, quantity: Quantity = "predicted") -> Array:
+        """Root mean square distance over runs, shape (n_trackers, n_steps).
+
+        At every scan in which all trackers have a prediction, before `first_scored` too.
+        """
+        return metrics.per_scan(self._squares(quantity), self.compared).value
+
+    def rmse_per_scan_se(self, quantity: Quantity = "predicted") -> Array:
+        """Standard error of `rmse_per_scan`."""
+        return metrics.per_scan(self._squares(quantity), self.compared).error
+
+    def npe(self, sigma: float, quantity: Quantity = "predicted") -> Array:
+        """Normalised position error: `rmse_per_scan` per standard deviation of the plots.
+
+        Parameters
+        ----------
+        sigma : float
+            Standard deviation of the plots (m), > 0.
+        quantity : {"predicted", "filtered"}
+            Of which position.
+
+        Raises
+        ------
+        ValueError
+            If `sigma` is not positive, or `quantity` is not a position.
+        """
+        if quantity == "velocity":
+            raise ValueError("quantity: 'velocity' is no position; one of predicted, filtered")
+        return self.rmse_per_scan(quantity) / number("sigma", positive("sigma", sigma))
+
+    def peak(self, quantity: Quantity = "predicted") -> Peak:
+        """Largest `rmse_per_scan` from `first_scored` on, and its scan, shape (n_trackers,)."""
+        curves = self.rmse_per_scan(quantity)
+        curves[:, : self.first_scored] = np.nan
+        return metrics.peak(curves)
+
+    def quantiles(self, levels: ArrayLike, quantity: Quantity = "predicted") -> Array:
+        """Quantiles of the distance over runs, shape (n_levels, n_trackers, n_steps).
+
+        Parameters
+        ----------
+        levels : array_like
+            From 0 to 1; a number gives shape (n_trackers, n_steps).
+        quantity : {"predicted", "filtered", "velocity"}
+            Whose distance.
+
+        Raises
+        ------
+        ValueError
+            If a level is out of range.
+        """
+        return metrics.quantiles(self._distance(quantity), self.compared, levels)
+
+    # ---------------------------------------------------------------- one against another
+
+    def paired_difference(
+        self,
+        first: str,
+        second: str,
+        level: float = 0.95,
+        quantity: Quantity = "predicted",
+        of: Literal["rmse", "mean"] = "rmse",
+    ) -> PairedDifference:
+        """What the error of one tracker is above another's, run by run.
+
+        Parameters
+        ----------
+        first, second : str
+            The trackers; the difference is second minus first.
+        level : float
+            Confidence level of the interval, 0 < level < 1.
+        quantity : {"predicted", "filtered", "velocity"}
+            Whose distance.
+        of : {"rmse", "mean"}
+            What is taken of each run: root mean square or mean distance.
+
+        Raises
+        ------
+        ValueError
+            If there is no such tracker, or a parameter is out of its range.
+
+        Notes
+        -----
+        Both saw the same plots, so most of what luck does to the one it does to the other: the
+        interval is narrower than the errors of the two by themselves would have it.
+        """
+        if of not in ("rmse", "mean"):
+            raise ValueError(f"of: unknown {of!r}; one of rmse, mean")
+        pair: list[Array] = []
+        for parameter, name in (("first", first), ("second", second)):
+            if name not in self.names:
+                known = ", ".join(self.names)
+                raise ValueError(f"{parameter}: no such tracker {name!r}; one of {known}")
+            away = self._distance(quantity)[self.names.index(name)]
+            if of == "rmse":
+                pair.append(np.sqrt(metrics.run_means(np.square(away), self.scored)))
+            else:
+                pair.append(metrics.run_means(away, self.scored))
+        difference, error, low, high, runs = metrics.paired_difference(pair[0], pair[1], level)
+        return PairedDifference(
+            first, second, quantity, of, difference, error, level, low, high, int(runs)
+        )
+
+    # ---------------------------------------------------------------- consistency
+
+    def nis_consistency(self, level: float = 0.95) -> Consistency | None:
+        """NIS against the chi-square distribution; None where there is no NIS."""
+        if self.nis is None:
+            return None
+        # An axis has an innovation where it has both.
+        axes = (~np.isnan(self.predicted) & ~np.isnan(self.measured)).sum(axis=-1)
+        return metrics.consistency(self.nis, axes, self.scored, independent_scans=True, level=level)
+
+    def nees_consistency(self, level: float = 0.95) -> Consistency | None:
+        """NEES of position against the chi-square distribution; None where there is no NEES."""
+        if self.nees is None:
+            return None
+        axes = self.measured.shape[-1]
+        return metrics.consistency(
+            self.nees, axes, self.scored, independent_scans=False, level=level
+        )
+
+    # ---------------------------------------------------------------- in other forms
+
+    def table(self) -> list[dict[str, Any]]:
+        """What there is to say of each tracker, a row each; see `fuzzytrack.testbed.tables`."""
+        from fuzzytrack.testbed.tables import table
+
+        return table(self)
+
+    def to_json_dict(self) -> dict[str, Any]:
+        """Summary and curves in plain types, for JSON; see `fuzzytrack.testbed.tables`."""
+        from fuzzytrack.testbed.tables import json_dict
+
+        return json_dict(self)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Curves as a table, a row a tracker and scan; see `fuzzytrack.testbed.tables`."""
+        from fuzzytrack.testbed.tables import data_frame
+
+        return data_frame(self)
+
+    def _errors(self, quantity: Quantity) -> Array:
+        if quantity not in QUANTITIES:
+            raise ValueError(f"quantity: unknown {quantity!r}; one of {', '.join(QUANTITIES)}")
+        errors: Array | None = getattr(self, quantity)
+        if errors is None:
+            raise ValueError("quantity: 'velocity' is not known; the scenario has no velocity")
+        return errors
+
+    def _distance(self, quantity: Quantity) -> Array:
+        self._errors(quantity)
+        away: Array = getattr(self, f"{quantity}_distance")
+        return away
+
+    def _squares(self, quantity: Quantity) -> Array:
+        return np.square(self._distance(quantity))

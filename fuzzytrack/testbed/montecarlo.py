@@ -1,0 +1,371 @@
+"""Monte Carlo experiments: runs in chunks, on one core, on many, or on a cluster; resumable."""
+
+from __future__ import annotations
+
+import operator
+import os
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.testbed.chunk_store import ChunkStore
+from fuzzytrack.testbed.noise import Plots
+from fuzzytrack.testbed.results import Results, Sample
+from fuzzytrack.testbed.scenario import Scenario
+from fuzzytrack.testbed.starting import prepare_start
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.state import Gains
+
+__all__ = ["monte_carlo"]
+
+Array = NDArray[np.float64]
+#: Called with the share of the runs that are done.
+Progress = Callable[[float], None]
+
+# Coordinates a chunk may hold: a tracker makes about ten arrays of this many floats.
+_COORDINATES = 200_000
+# Runs a chunk may hold. In two axes, the lanes that compiled code takes at once; and a job of a few
+# hundred runs still keeps several cores busy.
+_RUNS = 124
+# Chunks given to an executor at a time, done or not: bounds what waits in memory.
+_AHEAD = 128
+# Times that an executor is given a chunk that fails. Dask's reports a finished chunk as failed if
+# its worker dies while the chunk is fetched.
+_TRIES = 3
+
+
+def monte_carlo(
+    scenario: Scenario,
+    trackers: Mapping[str, Tracker] | None,
+    runs: int,
+    seed: int,
+    *,
+    progress: Progress | None = None,
+    executor: Executor | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+) -> Results:
+    """Run trackers on many random draws of a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Target and sensors.
+    trackers : mapping of str to Tracker, or None
+        The trackers, by name; those of the scenario if None.
+    runs : int
+        Number of Monte Carlo runs, at least 1.
+    seed : int
+        Seed, not negative; the same seed gives the same numbers.
+    progress : callable, optional
+        Called with the share of the runs that are done, after every chunk of them.
+    executor : concurrent.futures.Executor, optional
+        Runs the chunks; here and now unless given. A process pool, or a Dask cluster through
+        ``client.get_executor()``. Scenario and trackers are pickled to it.
+    folder : str or path, optional
+        Keeps finished chunks below its ``chunks``, so that a job that was interrupted can go on;
+        made if it does not exist.
+    resume : bool
+        Whether to go on with what `folder` holds, if it holds anything. More runs, or fewer, may
+        be asked for than before.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    ValueError
+        If there is no tracker or no such tracker, `runs` or `seed` is out of range, `folder` holds
+        chunks and `resume` is False, or they are of another job: says in what it differs.
+    OSError
+        If `folder` cannot be written to.
+
+    Notes
+    -----
+    Every tracker sees the same plots. Every run has a random stream of its own, spawned from the
+    seed, so its numbers depend to the last bit neither on how many runs there are nor on how they
+    are cut into chunks, where those are run or in which order they finish. A run without a plot has
+    NaN for errors.
+
+    All errors are kept: 8·n_steps·(n_axes·(1 + 3·n_trackers) + 2·n_trackers) bytes a run, with 2
+    for 3 where the scenario has no velocity, and without the last term where it has no
+    ``process_sigma``. 100 scans of two axes and 5 trackers take up to 34 kB a run.
+
+    An error in a chunk, a broken process pool or an interrupt ends the job; chunks that are
+    finished stay in `folder`. A Dask cluster may lose workers: their chunks are run again. A chunk
+    that fails on an executor is tried three times.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from fuzzytrack.testbed.montecarlo import monte_carlo
+    >>> from fuzzytrack.testbed.scenario import PlotNoise, Scenario
+    >>> t = np.arange(20.0)
+    >>> scenario = Scenario("straight", t, 100 * t[:, None], PlotNoise(10.0))
+    >>> trackers = {"fixed": make_tracker("fixed:alpha=0.5:beta=0.2")}
+    >>> results = monte_carlo(scenario, trackers, runs=50, seed=1)
+    >>> results.rmse().round(1), results.rmse_se().round(1)
+    (array([11.]), array([0.5]))
+    """
+    if operator.index(runs) < 1:
+        raise ValueError(f"runs must be at least 1, got {runs}")
+    if operator.index(seed) < 0:
+        raise ValueError(f"seed must not be negative, got {seed}")
+    if trackers is None:
+        trackers = {name: make_tracker(name) for name in scenario.trackers}
+    if not trackers:
+        raise ValueError("trackers: needs at least one")
+    trackers = dict(trackers)
+    size = _chunk_runs(scenario)
+    chunks = [(first, min(size, runs - first)) for first in range(0, runs, size)]
+    store = None
+    if folder is not None:
+        store = ChunkStore.open(folder, scenario, trackers, seed, size, resume=resume)
+    elif resume:
+        raise ValueError("resume: needs the folder of the job to go on with")
+
+    whole: dict[str, Array] = {}
+    done = 0
+    for (first, count), part in _parts(scenario, trackers, seed, chunks, executor, store):
+        _put(whole, part, first, runs)
+        done += count
+        if progress is not None:
+            progress(done / runs)
+    sample = {name: whole.pop(name) for name in tuple(whole) if name.startswith("sample_")}
+    return Results(
+        scenario=scenario.name,
+        names=tuple(trackers),
+        seed=seed,
+        first_scored=scenario.first_scored,
+        time=scenario.time,
+        predicted=whole["predicted"],
+        filtered=whole["filtered"],
+        velocity=whole.get("velocity"),
+        measured=whole["measured"],
+        nis=whole.get("nis"),
+        nees=whole.get("nees"),
+        sample=Sample(**{name.removeprefix("sample_"): array for name, array in sample.items()}),
+    )
+
+
+def _chunk_runs(scenario: Scenario) -> int:
+    """Runs a chunk: of the scenario alone, so that any job can go on with the chunks of another."""
+    return max(1, min(_RUNS, _COORDINATES // (len(scenario.time) * scenario.n_axes)))
+
+
+def _put(whole: dict[str, Array], part: dict[str, Array], first: int, runs: int) -> None:
+    """Put a chunk into its place among all runs."""
+    for name, array in part.items():
+        if name.startswith("sample_"):
+            whole[name] = array
+            continue
+        axis = 0 if name == "measured" else 1
+        if name not in whole:
+            whole[name] = np.empty((*array.shape[:axis], runs, *array.shape[axis + 1 :]))
+        at = slice(first, first + array.shape[axis])
+        whole[name][at if axis == 0 else (slice(None), at)] = array
+
+
+# -------------------------------------------------------------------- where chunks are run
+
+Chunk = tuple[int, int]
+
+
+def _parts(
+    scenario: Scenario,
+    trackers: dict[str, Tracker],
+    seed: int,
+    chunks: list[Chunk],
+    executor: Executor | None,
+    store: ChunkStore | None,
+) -> Iterator[tuple[Chunk, dict[str, Array]]]:
+    """All chunks, those that are stored first, the others as they finish."""
+    missing = []
+    for chunk in chunks:
+        stored = None if store is None else store.load(*chunk)
+        if stored is None:
+            missing.append(chunk)
+        else:
+            yield chunk, stored
+    job = (scenario, trackers, seed)
+    for chunk, part in _here(job, missing) if executor is None else _on(executor, job, missing):
+        if store is not None:
+            store.save(*chunk, part)
+        yield chunk, part
+
+
+Job = tuple[Scenario, dict[str, Tracker], int]
+
+
+def _here(job: Job, chunks: list[Chunk]) -> Iterator[tuple[Chunk, dict[str, Array]]]:
+    for chunk in chunks:
+        yield chunk, run_chunk(*job, *chunk)
+
+
+def _on(
+    executor: Executor, job: Job, chunks: list[Chunk]
+) -> Iterator[tuple[Chunk, dict[str, Array]]]:
+    waiting = iter(chunks)
+    running: dict[Future[dict[str, Array]], Chunk] = {}
+    failures: Counter[Chunk] = Counter()
+    try:
+        while True:
+            for chunk in islice(waiting, _AHEAD - len(running)):
+                running[executor.submit(run_chunk, *job, *chunk)] = chunk
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                chunk = running.pop(future)
+                try:
+                    part = future.result()
+                except BrokenExecutor:
+                    raise
+                except Exception:
+                    failures[chunk] += 1
+                    if failures[chunk] == _TRIES:
+                        raise
+                    running[executor.submit(run_chunk, *job, *chunk)] = chunk
+                else:
+                    yield chunk, part
+    finally:
+        for future in running:
+            future.cancel()
+
+
+# -------------------------------------------------------------------- one chunk
+
+
+def run_chunk(
+    scenario: Scenario, trackers: Mapping[str, Tracker], seed: int, first: int, count: int
+) -> dict[str, Array]:
+    """Errors of some of the runs.
+
+    Parameters
+    ----------
+    scenario, trackers, seed
+        As for `monte_carlo`.
+    first, count : int
+        The first run, and how many.
+
+    Returns
+    -------
+    dict of ndarray
+        Attributes of `Results` by name, for these runs; with run 0 those of `Sample` too, named
+        ``sample_...``.
+    """
+    # What SeedSequence(seed).spawn(runs) gives, without those before.
+    streams = [np.random.SeedSequence(seed, spawn_key=(k,)) for k in range(first, first + count)]
+    position, velocity = scenario.truth(first, count)
+    plots = scenario.sensors.measure(position, streams)
+    if scenario.prepare_start:
+        plots = _prepared(scenario.time, plots)
+    true, moving = _by_run(position), None if velocity is None else _by_run(velocity)
+    part = _blank(len(trackers), plots.z.shape, moving is not None, scenario.process_sigma)
+    part["measured"] = _turned(plots.z - true)
+    for k, tracker in enumerate(trackers.values()):
+        result = tracker.run(scenario.time, plots.z, plots.sigma)
+        part["predicted"][k] = _turned(result.predicted - true)
+        part["filtered"][k] = _turned(result.filtered - true)
+        if moving is not None:
+            speeds = np.where(np.isnan(result.filtered), np.nan, result.velocity)
+            part["velocity"][k] = _turned(speeds - moving)
+        if scenario.process_sigma is not None:
+            nis, nees = _normalised(result, plots.sigma, true, scenario.process_sigma)
+            part["nis"][k], part["nees"][k] = nis.T, nees.T
+        if first == 0:
+            _keep(part, k, result)
+    if first == 0:
+        part["sample_truth"] = np.array(true[:, 0])
+        part["sample_plots"] = plots.z[:, 0].copy()
+    else:
+        part = {name: array for name, array in part.items() if not name.startswith("sample_")}
+    return part
+
+
+_SAMPLED = ("predicted", "filtered", "alpha", "beta", "gamma")
+
+
+def _blank(
+    number: int, shape: tuple[int, ...], moving: bool, process_sigma: float | None
+) -> dict[str, Array]:
+    n_steps, count, n_axes = shape
+    names = ("predicted", "filtered", "velocity") if moving else ("predicted", "filtered")
+    part = {name: np.empty((number, count, n_steps, n_axes)) for name in names}
+    if process_sigma is not None:
+        part |= {name: np.empty((number, count, n_steps)) for name in ("nis", "nees")}
+    return part | {f"sample_{name}": np.empty((number, n_steps, n_axes)) for name in _SAMPLED}
+
+
+def _keep(part: dict[str, Array], k: int, result: TrackResult) -> None:
+    """Tracker k's run 0."""
+    gains = result.gains
+    of_it = (result.predicted, result.filtered, gains.alpha, gains.beta, gains.gamma)
+    for name, array in zip(_SAMPLED, of_it, strict=True):
+        part[f"sample_{name}"][k] = array[:, 0]
+
+
+def _by_run(values: Array) -> Array:
+    return values if values.ndim == 3 else values[:, None]
+
+
+def _turned(values: Array) -> Array:
+    """Runs first, then scans."""
+    return values.swapaxes(0, 1)
+
+
+def _prepared(time: Array, plots: Plots) -> Plots:
+    """Plots as `prepare_start` makes them, at all times: which it drops depends on the runs."""
+    if np.isnan(plots.z).all():
+        return plots
+    left, begun = prepare_start(time, plots.z, plots.sigma)
+    before = np.full((len(time) - len(left), *plots.z.shape[1:]), np.nan)
+    return Plots(np.concatenate([before, begun.z]), np.concatenate([before, begun.sigma]))
+
+
+def _normalised(
+    result: TrackResult, sigma: Array, true: Array, process_sigma: float
+) -> tuple[Array, Array]:
+    """NIS and NEES of position, shape (n_steps, runs); NaN for runs whose covariance is not known.
+
+    One run of which it is not known spoils a whole batch: then each is taken by itself, so that
+    what a run has does not depend on those beside it.
+    """
+    from fuzzytrack.trackers.covariance import track_covariance
+
+    try:
+        found = track_covariance(result, sigma, process_sigma)
+    except ValueError:
+        count = result.measured.shape[1]
+        if count == 1:
+            nothing = np.full(result.measured.shape[:2], np.nan)
+            return nothing, nothing
+        everyone = np.broadcast_to(true, result.measured.shape)
+        runs = [slice(k, k + 1) for k in range(count)]
+        each = [
+            _normalised(_some(result, k), sigma[:, k], everyone[:, k], process_sigma) for k in runs
+        ]
+        nis, nees = (np.concatenate(part, axis=1) for part in zip(*each, strict=True))
+        return nis, nees
+    off = np.square(result.filtered - true) / found.filtered[..., 0, 0]
+    total = off[..., 0].copy()
+    for k in range(1, off.shape[-1]):
+        total += off[..., k]
+    return found.nis, total
+
+
+def _some(result: TrackResult, runs: slice) -> TrackResult:
+    arrays = ("measured", "predicted", "filtered", "velocity", "acceleration", "innovation")
+    gains = (getattr(result.gains, name)[:, runs] for name in ("alpha", "beta", "gamma"))
+    return replace(
+        result,
+        **{name: getattr(result, name)[:, runs] for name in arrays},
+        gains=Gains(*gains),
+    )
