@@ -1,8 +1,21 @@
 """Trackers: the recursion, its state and results."""
 
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
+from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker, trackers
+from fuzzytrack.trackers.imm import InteractingModels
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains, TrackState
+from fuzzytrack.trackers.window_search import WindowSearch
 
-__all__ = ["AlphaBetaTracker", "Gains", "TrackResult", "TrackState", "Tracker", "trackers"]
+__all__ = [
+    "AlphaBetaTracker",
+    "Gains",
+    "InteractingModels",
+    "ParallelBank",
+    "TrackResult",
+    "TrackState",
+    "Tracker",
+    "WindowSearch",
+    "trackers",
+]
