@@ -11,10 +11,13 @@ from fuzzytrack.cli.certifying import certify
 from fuzzytrack.cli.comparing import compare
 from fuzzytrack.cli.demonstration import demo
 from fuzzytrack.cli.errors import Commands
+from fuzzytrack.cli.experimenting import experiment
 from fuzzytrack.cli.gains import design, gains
 from fuzzytrack.cli.listing import trackers
 from fuzzytrack.cli.output import say
+from fuzzytrack.cli.reproducing import reproduce
 from fuzzytrack.cli.rulebases import rulebase
+from fuzzytrack.cli.simulating import simulate
 from fuzzytrack.cli.surface import surface
 from fuzzytrack.cli.tracking import track
 
@@ -33,12 +36,15 @@ app = typer.Typer(
 app.command()(demo)
 app.command()(track)
 app.command()(compare)
+app.command("testbed")(experiment)
+app.command()(simulate)
 app.command()(surface)
 app.add_typer(rulebase, name="rulebase")
 app.command()(certify)
 app.command()(gains)
 app.add_typer(design, name="design")
 app.command()(trackers)
+app.command()(reproduce)
 
 
 def _version(wanted: bool) -> None:

@@ -9,7 +9,20 @@ import typer
 
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["Axes", "Id", "Json", "Plots", "Seed", "Sort", "Time", "names", "numbers_at", "pairs"]
+__all__ = [
+    "Axes",
+    "Id",
+    "Json",
+    "Plots",
+    "Scenario",
+    "ScenarioOrNone",
+    "Seed",
+    "Sort",
+    "Time",
+    "names",
+    "numbers_at",
+    "pairs",
+]
 
 Plots = Annotated[str, typer.Argument(metavar="FILE", help="CSV (or Parquet) file.")]
 Time = Annotated[
@@ -25,6 +38,9 @@ Axes = Annotated[
 ]
 Sort = Annotated[bool, typer.Option("--sort", help="Put the plots in order of time.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the noise.")]
+_SCENARIO = typer.Argument(metavar="SCENARIO", help="Name of a shipped scenario, or FILE.yaml.")
+Scenario = Annotated[str, _SCENARIO]
+ScenarioOrNone = Annotated[str | None, _SCENARIO]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 
 

@@ -1,0 +1,87 @@
+"""Who does the work of a long job: this process, others of this computer, or a cluster."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor
+from contextlib import contextmanager
+
+__all__ = ["workers"]
+
+# Seconds that a cluster may take to answer.
+_PATIENCE = 5
+
+
+@contextmanager
+def workers(jobs: int, scheduler: str | None) -> Iterator[Executor | None]:
+    """Executor of a job; it is closed at the end, and drops what has not begun.
+
+    Parameters
+    ----------
+    jobs : int
+        Processes of this computer; no executor for 1.
+    scheduler : str or None
+        Address of a Dask scheduler, which then does the work.
+
+    Yields
+    ------
+    concurrent.futures.Executor or None
+
+    Raises
+    ------
+    ValueError
+        If Dask is not installed, no scheduler answers, or workers are lost during the job.
+    """
+    if scheduler is None and jobs == 1:
+        yield None
+        return
+    pool = _processes(jobs) if scheduler is None else _cluster(scheduler)
+    try:
+        with pool as executor:
+            yield executor
+    except BrokenExecutor:
+        raise ValueError(
+            "a worker process died, perhaps for want of memory; fewer --jobs?"
+        ) from None
+    except CancelledError:
+        raise ValueError(f"--scheduler: lost the Dask scheduler at {scheduler}") from None
+
+
+@contextmanager
+def _processes(jobs: int) -> Iterator[Executor]:
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    pool = ProcessPoolExecutor(
+        jobs, multiprocessing.get_context("spawn"), initializer=_leave_interrupts
+    )
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C goes to all processes of a terminal; the first of them sees to it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    try:
+        from distributed import Client
+        from distributed.comm.addressing import resolve_address
+    except ImportError:
+        raise ValueError(
+            "--scheduler needs Dask, which is not installed; pip install 'fuzzytrack[dask]'"
+        ) from None
+    try:
+        # A client that never had a valid address is noisy when it goes.
+        resolve_address(address)
+        client = Client(address, timeout=_PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError) as error:
+        why = str(error).partition("\n")[0]
+        raise ValueError(f"--scheduler: no Dask scheduler answers at {address!r}: {why}") from None
+    with client:
+        yield client.get_executor()  # type: ignore[no-untyped-call]
