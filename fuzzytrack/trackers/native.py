@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import hashlib
+import sys
 from collections.abc import Callable
-from types import CellType, CodeType, FunctionType
+from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
-__all__ = ["compiled"]
+__all__ = ["compiled", "fingerprint"]
 
 _LONG_TUPLE = 16
 
 
-def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+class _UnknownContentError(Exception):
+    """A value whose content cannot be told."""
+
+
+def compiled(function: Callable[..., Any], digest: str | None = None) -> Callable[..., Any]:
     """Compile a plain Python function together with the plain functions that it refers to.
 
     Schedulers are written in plain Python and refer to helpers through their module and enclosing
@@ -24,6 +30,8 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     ----------
     function : callable
         Function of scalars and tuples, without recursion.
+    digest : str, optional
+        What the function is known by on disk, see `fingerprint`; without it nothing is kept there.
 
     Returns
     -------
@@ -47,7 +55,7 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
         return value
 
     def rebuild(original: FunctionType) -> FunctionType:
-        names = _global_names(original.__code__)
+        names = _names(original.__code__)
         scope = {n: prepare(v) for n, v in original.__globals__.items() if n in names}
         scope["__builtins__"] = original.__globals__.get("__builtins__", __builtins__)
         scope["__name__"] = original.__globals__.get("__name__", __name__)
@@ -56,14 +64,77 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
             original.__code__, scope, original.__name__, original.__defaults__, cells
         )
 
-    dispatcher: Callable[..., Any] = prepare(function)
-    return dispatcher
+    dispatcher: Any = prepare(function)
+    if digest is not None:
+        from fuzzytrack.trackers.kernel_cache import KernelCache
+
+        dispatcher._cache = KernelCache(dispatcher.py_func, digest)
+    return dispatcher  # type: ignore[no-any-return]
 
 
-def _global_names(code: CodeType) -> set[str]:
+def fingerprint(function: Callable[..., Any]) -> str | None:
+    """Digest of a plain Python function and of all that it refers to.
+
+    Parameters
+    ----------
+    function : callable
+
+    Returns
+    -------
+    str or None
+        The same for functions that do the same, in any process; None if the function refers to
+        something whose content cannot be told.
+    """
+    import llvmlite
+    import numba
+
+    made_by = (sys.version_info[:2], numba.__version__, llvmlite.__version__)
+    digest = hashlib.sha256(repr(made_by).encode())
+    try:
+        _add(digest, function, {})
+    except _UnknownContentError:
+        return None
+    return digest.hexdigest()
+
+
+def _add(digest: Any, value: Any, seen: dict[int, int]) -> None:
+    """Take in a value, and what it refers to; a function met before by its number."""
+
+    def take(kind: str, content: bytes) -> None:
+        # With its length, so that no two sequences of values look the same.
+        digest.update(f"{kind} {len(content)}:".encode() + content)
+
+    if isinstance(value, FunctionType):
+        if id(value) in seen:
+            take("again", str(seen[id(value)]).encode())
+            return
+        seen[id(value)] = len(seen)
+        scope = {n: value.__globals__[n] for n in _names(value.__code__) & set(value.__globals__)}
+        cells = tuple(cell.cell_contents for cell in value.__closure__ or ())
+        for part in (value.__code__, value.__defaults__, cells, *sorted(scope.items())):
+            _add(digest, part, seen)
+    elif isinstance(value, CodeType):
+        take("code", value.co_code)
+        for part in (value.co_names, value.co_varnames, value.co_freevars, value.co_consts):
+            _add(digest, part, seen)
+    elif isinstance(value, tuple):
+        take("tuple", str(len(value)).encode())
+        for item in value:
+            _add(digest, item, seen)
+    elif isinstance(value, np.ndarray):
+        take(f"array {value.dtype.str} {value.shape}", value.tobytes())
+    elif value is None or isinstance(value, bool | int | float | str | bytes):
+        take(type(value).__name__, repr(value).encode())
+    elif isinstance(value, ModuleType | BuiltinFunctionType | type):
+        take("name", f"{getattr(value, '__module__', '')}.{value.__name__}".encode())
+    else:
+        raise _UnknownContentError(type(value).__name__)
+
+
+def _names(code: CodeType) -> set[str]:
     """Names that a function may look up globally, inner functions and generators included."""
-    names = set(code.co_names)
+    found = set(code.co_names)
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
-            names |= _global_names(constant)
-    return names
+            found |= _names(constant)
+    return found

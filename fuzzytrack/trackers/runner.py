@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzytrack.trackers.native import compiled
+from fuzzytrack.trackers.native import compiled, fingerprint
 from fuzzytrack.trackers.rows import Rows
 
 __all__ = ["Recursion", "Runner"]
@@ -205,9 +205,11 @@ class Runner:
     @cached_property
     def _compiled_run(self) -> Callable[..., None]:
         # Compiled one by one, lest they be inlined into each other at every use.
-        step = compiled(self.recursion.step(BLOCK))
+        step = self.recursion.step(BLOCK)
+        # What is kept on disk is known by all that it is made of, in plain Python.
+        digest = fingerprint(_run_function(step, _copy_in, _copy_out, self.rows, BLOCK))
         copies = _compiled_once(_copy_in), _compiled_once(_copy_out)
-        return compiled(_run_function(step, *copies, self.rows, BLOCK))
+        return compiled(_run_function(compiled(step), *copies, self.rows, BLOCK), digest)
 
 
 _compiled_once = lru_cache(maxsize=None)(compiled)
