@@ -20,6 +20,7 @@ from fuzzytrack.testbed.scenario import Scenario
 from fuzzytrack.testbed.starting import prepare_start
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.trackers.lanes import announce
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
@@ -195,6 +196,10 @@ def _parts(
             missing.append(chunk)
         else:
             yield chunk, stored
+    if executor is None:
+        coordinates = sum(count for _, count in missing) * len(scenario.time) * scenario.n_axes
+        for tracker in trackers.values():
+            announce(tracker, scenario.n_axes, coordinates)
     job = (scenario, trackers, seed)
     for chunk, part in _here(job, missing) if executor is None else _on(executor, job, missing):
         if store is not None:

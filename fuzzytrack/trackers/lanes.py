@@ -16,7 +16,7 @@ from fuzzytrack.trackers.rows import Rows
 from fuzzytrack.trackers.runner import Recursion, Runner
 from fuzzytrack.trackers.state import Gains, TrackState, spread
 
-__all__ = ["LaneTracker", "runner"]
+__all__ = ["LaneTracker", "announce", "runner"]
 
 Array = NDArray[np.float64]
 
@@ -203,6 +203,22 @@ def runner(tracker: LaneTracker, n_axes: int) -> Runner:
         Axes of a lane: 1 unless the tracker is coupled.
     """
     return _runner_of_this(_Identity(tracker), n_axes)
+
+
+def announce(tracker: object, n_axes: int, coordinates: int) -> None:
+    """Tell a tracker of a job in many parts, so that it is compiled from the first of them.
+
+    Parameters
+    ----------
+    tracker : object
+        A tracker; of one that is no `LaneTracker` nothing is asked.
+    n_axes : int
+        Axes of the plots.
+    coordinates : int
+        Number of coordinates in all.
+    """
+    if isinstance(tracker, LaneTracker):
+        runner(tracker, n_axes if tracker.coupled else 1).work += coordinates
 
 
 @lru_cache(maxsize=256)

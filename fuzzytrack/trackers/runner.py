@@ -57,12 +57,13 @@ class Runner:
     Attributes
     ----------
     recursion : Recursion
-    plain : int
-        Coordinates that were tracked in plain Python so far.
+    work : int
+        Coordinates that were tracked so far, or are announced: a job in many parts may raise it
+        before the first.
     """
 
     recursion: Recursion
-    plain: int = 0
+    work: int = 0
 
     @property
     def rows(self) -> Rows:
@@ -105,8 +106,8 @@ class Runner:
             beta, gamma, shape (n_steps, lanes).
         """
         if native is None:
-            native = self.plain + plots.size > COMPILE_ABOVE
-        self.plain += 0 if native else plots.size
+            native = self.work + plots.size > COMPILE_ABOVE
+        self.work += plots.size
         return (self._run_compiled if native else self._run_plain)(lanes, plots, dts, sigmas)
 
     def step(

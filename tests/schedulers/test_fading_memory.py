@@ -5,7 +5,6 @@ from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
 from fuzzytrack.schedulers.fading_memory import FadingMemory
-from fuzzytrack.testing import check_scheduler
 
 
 def poles(alpha, beta, gamma):
@@ -56,7 +55,3 @@ def test_it_fits_all_plots_with_weights_that_fade(xi, order):
 def test_parameters_are_checked(arguments, message):
     with pytest.raises(ValueError, match=message):
         FadingMemory(**arguments)
-
-
-def test_it_keeps_the_contract():
-    check_scheduler(FadingMemory(0.6))

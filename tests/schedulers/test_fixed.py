@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzytrack import FixedGains
-from fuzzytrack.testing import check_scheduler
 
 
 def poles(alpha, beta, gamma):
@@ -52,7 +51,3 @@ def test_gains_must_be_numbers(name):
 def test_it_is_a_value():
     assert FixedGains(0.5, 0.2) == FixedGains(0.5, 0.2, 0)
     assert pickle.loads(pickle.dumps(FixedGains(0.5, 0.2, 0.1))) == FixedGains(0.5, 0.2, 0.1)
-
-
-def test_it_keeps_the_contract():
-    check_scheduler(FixedGains(0.5, 0.2, 0.05))

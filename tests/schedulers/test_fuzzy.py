@@ -23,19 +23,6 @@ def changed(rules, old, new):
     return ft.loads_rulebase(text.replace(old, new), "my.yaml")
 
 
-@pytest.mark.parametrize(
-    ("name", "method"),
-    [
-        ("stiffness-damping", "exact"),
-        ("stiffness-damping", "table"),
-        ("stiffness-damping-cog", "relation"),
-        ("chan-style", "exact"),
-    ],
-)
-def test_schedulers_keep_the_contract(name, method):
-    check_scheduler(ft.FuzzyScheduler(ft.load_rulebase(name), method))
-
-
 def test_gains_come_from_the_rule_base_through_the_w_domain(rules):
     kernel = ft.FuzzyScheduler(rules).kernel(1)
     # E = 3/10, and with E′ = 0.5 the error rate is -0.2/0.5

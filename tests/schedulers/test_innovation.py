@@ -6,7 +6,6 @@ from hypothesis import strategies as st
 from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.gains import kalata, tracking_index
 from fuzzytrack.schedulers.innovation import InnovationScheduler
-from fuzzytrack.testing import check_scheduler
 
 
 def by_the_paper(innovations, dts, sigmas, scheduler):
@@ -131,8 +130,3 @@ def test_unit_process_noise_latches_up():
 def test_parameters_are_checked(arguments, message):
     with pytest.raises(ValueError, match=message):
         InnovationScheduler(**arguments)
-
-
-@pytest.mark.parametrize("scheduler", [InnovationScheduler(window=3)])
-def test_it_keeps_the_contract(scheduler):
-    check_scheduler(scheduler)

@@ -4,7 +4,6 @@ import pytest
 from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.gains import growing_memory, kalata
 from fuzzytrack.schedulers.kalman import KalmanCA, KalmanCV
-from fuzzytrack.testing import check_scheduler
 
 
 def matrices(order, dt):
@@ -128,8 +127,3 @@ def test_sigma_is_asked_for():
     assert not KalmanCA(1.0, 1.0, 2.0).needs_sigma
     with pytest.raises(ValueError, match="KalmanCA needs the standard deviation"):
         AlphaBetaTracker(KalmanCA(1.0, 1.0)).run([0, 1], [0, 1])
-
-
-@pytest.mark.parametrize("scheduler", [KalmanCV(0.5), KalmanCA(0.5, 1.0, 10.0)])
-def test_it_keeps_the_contract(scheduler):
-    check_scheduler(scheduler)

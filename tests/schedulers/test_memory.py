@@ -3,7 +3,6 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.schedulers.memory import BenedictBordner, GrowingMemory, LinearCombination
-from fuzzytrack.testing import check_scheduler
 
 STEPS = np.arange(12.0)
 
@@ -79,8 +78,3 @@ def test_the_combination_mixes_beta_only():
 def test_parameters_are_checked(make, message):
     with pytest.raises(ValueError, match=message):
         make()
-
-
-@pytest.mark.parametrize("scheduler", [BenedictBordner(0.4), LinearCombination(limit=20)])
-def test_it_keeps_the_contract(scheduler):
-    check_scheduler(scheduler)

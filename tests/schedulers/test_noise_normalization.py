@@ -15,7 +15,6 @@ from fuzzytrack.schedulers.noise_normalization import (
     Smoothed,
     SmoothedMagnitude,
 )
-from fuzzytrack.testing import check_scheduler
 
 metres = st.floats(-1e6, 1e6)
 unit = st.floats(-1, 1)
@@ -81,11 +80,6 @@ rules:
   - {if: {lag: right}, then: {alpha: high, beta: high}}
 scheduler: {normalization: NAME, gains: direct}
 """
-
-
-@pytest.mark.parametrize("name", ["predicted", "smoothed-magnitude, opening: growing-memory"])
-def test_a_rule_base_on_a_noise_scaled_signal_keeps_the_contract(name):
-    check_scheduler(FuzzyScheduler(loads_rulebase(RULES.replace("NAME", name))))
 
 
 # ------------------------------------------------------------------ predicted

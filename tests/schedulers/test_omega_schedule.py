@@ -10,7 +10,6 @@ import fuzzytrack as ft
 from fuzzytrack.fuzzy.schema import rulebase_schema
 from fuzzytrack.gains import growing_memory, kalata
 from fuzzytrack.testbed.published import track_set
-from fuzzytrack.testing import check_scheduler
 
 LEVELS = (0.29, 0.308, 0.556, 0.778)
 
@@ -31,10 +30,6 @@ def stiffness(lag):
 def gains_of(lag):
     """Kalata's gains by the tracking index λ = 4ω₀²."""
     return kalata(4 * stiffness(lag) ** 2)
-
-
-def test_the_contract(rules):
-    check_scheduler(ft.FuzzyScheduler(rules))
 
 
 def test_stiffness_runs_straight_between_the_levels_and_stays_beyond_the_last(rules):

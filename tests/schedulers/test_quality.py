@@ -4,7 +4,6 @@ import pytest
 from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.gains import quality
 from fuzzytrack.schedulers.quality import QualityGains, quality_gains
-from fuzzytrack.testing import check_scheduler
 
 
 @pytest.mark.parametrize(
@@ -70,7 +69,3 @@ def test_a_start_from_one_point_begins_at_quality_one():
 def test_parameters_are_checked(arguments, message):
     with pytest.raises(ValueError, match=message):
         QualityGains(**arguments)
-
-
-def test_it_keeps_the_contract():
-    check_scheduler(QualityGains())

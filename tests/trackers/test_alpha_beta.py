@@ -10,7 +10,6 @@ from scipy.signal import lfilter
 
 import fuzzytrack as ft
 from fuzzytrack.schedulers import GainScheduler
-from fuzzytrack.testing import check_tracker
 
 FIXED = ft.FixedGains(0.5377, 0.2018)
 
@@ -302,8 +301,3 @@ def test_arguments_of_the_tracker():
         ft.AlphaBetaTracker(0.5)
     with pytest.raises(ValueError, match="start: unknown 'three-point'; one of two-point"):
         ft.AlphaBetaTracker(FIXED, start="three-point")
-
-
-def test_it_keeps_the_contract_with_either_start():
-    check_tracker(ft.AlphaBetaTracker(FIXED))
-    check_tracker(ft.AlphaBetaTracker(FIXED, "one-point"))

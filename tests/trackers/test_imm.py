@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.schedulers.kalman import KalmanCA, KalmanCV
-from fuzzytrack.testing import check_tracker
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.imm import InteractingModels
 from fuzzytrack.trackers.imm_recursion import _exp
@@ -190,14 +189,6 @@ def test_where_one_model_is_all_it_is_the_kalman_filter(tracker, scheduler, velo
         for axis in (0, 1):
             ours_of_axis = getattr(ours.gains, name)[:, axis]
             assert ours_of_axis == pytest.approx(expected, rel=1e-11, nan_ok=True)
-
-
-def test_tracker_conforms():
-    check_tracker(JOINT)
-
-
-def test_tracker_of_single_axes_conforms():
-    check_tracker(InteractingModels(0.2, 3.0, maneuver="cv", joint=False))
 
 
 def test_one_axis_is_the_same_joint_or_not():

@@ -2,7 +2,7 @@ import numpy as np
 
 import fuzzytrack as ft
 from fuzzytrack.trackers import runner as module
-from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.lanes import announce, runner
 
 
 def test_many_small_jobs_are_compiled_like_one_large_one(monkeypatch):
@@ -18,5 +18,20 @@ def test_many_small_jobs_are_compiled_like_one_large_one(monkeypatch):
     tracker = ft.AlphaBetaTracker(ft.FixedGains(0.4321, 0.1234))
     results = [tracker.run(np.arange(40), np.arange(40.0) ** 1.5) for _ in range(4)]
     assert compiled == [40, 40]
-    assert runner(tracker, 1).plain == 80
+    assert runner(tracker, 1).work == 160
     np.testing.assert_array_equal(results[0].filtered, results[3].filtered)
+
+
+def test_announced_work_is_compiled_from_its_first_part(monkeypatch):
+    monkeypatch.setattr(module, "COMPILE_ABOVE", 100)
+    compiled = []
+    monkeypatch.setattr(
+        module.Runner,
+        "_run_compiled",
+        lambda self, *given: compiled.append(1) or self._run_plain(*given),
+    )
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(0.4322, 0.1234))
+    announce(tracker, 2, 101)
+    tracker.run(np.arange(4), np.zeros((4, 2)))
+    assert compiled == [1]
+    announce(object(), 2, 101)

@@ -10,7 +10,6 @@ from fuzzytrack.schedulers import BenedictBordner
 from fuzzytrack.testbed.noise import Noise, streams
 from fuzzytrack.testbed.published import s3
 from fuzzytrack.testbed.scenario import PlotNoise
-from fuzzytrack.testing import check_tracker
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lanes import runner
 from fuzzytrack.trackers.window_search import WindowSearch
@@ -101,10 +100,6 @@ def test_the_window_is_of_plots():
     later = WindowSearch(4).run(np.arange(24), spread).gains.alpha
     assert (later[4:12:2] == 0.05).all()
     assert later[12] != 0.05
-
-
-def test_keeps_the_contract():
-    check_tracker(WindowSearch(window=4))
 
 
 @pytest.mark.parametrize("far", [1e9, 1e160, -1e200])

@@ -1,0 +1,83 @@
+"""Every scheduler and every tracker keeps its contract: one test for all."""
+
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.fuzzy.loading import shipped_rulebases
+from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.schedulers import (
+    BenedictBordner,
+    FadingMemory,
+    GrowingMemory,
+    InnovationScheduler,
+    KalmanCA,
+    KalmanCV,
+    LinearCombination,
+    QualityGains,
+    normalizations,
+    schedulers,
+)
+from fuzzytrack.testing import check_scheduler, check_tracker
+from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch, trackers
+
+
+def fuzzy(name, method="exact", **settings):
+    """A shipped rule base, maybe with other settings of its scheduler."""
+    text = dumps_rulebase(ft.load_rulebase(name))
+    lines = [line for line in text.splitlines() if not line.startswith("scheduler")]
+    known = {**dict(ft.load_rulebase(name).scheduler), **settings}
+    written = ", ".join(f"{key}: {value}" for key, value in known.items() if value is not None)
+    rules = ft.loads_rulebase("\n".join([*lines, f"scheduler: {{{written}}}"]))
+    return ft.FuzzyScheduler(rules, method)
+
+
+SCHEDULERS = {
+    "benedict-bordner": BenedictBordner(0.4),
+    "chan-style": fuzzy("chan-style"),
+    "fading-memory": FadingMemory(0.6),
+    "fixed": ft.FixedGains(0.5, 0.2, 0.05),
+    "growing-memory": GrowingMemory(limit=6),
+    "innovation": InnovationScheduler(window=3),
+    "innovation, as published": InnovationScheduler.as_published(window=2),
+    "kalman-ca": KalmanCA(0.5, 1.0, 10.0),
+    "kalman-cv": KalmanCV(0.5),
+    "linear-combination": LinearCombination(limit=20),
+    "omega-schedule": fuzzy("omega-schedule"),
+    "omega-schedule on magnitude": fuzzy("omega-schedule", normalization="smoothed-magnitude"),
+    "omega-schedule on predicted": fuzzy("omega-schedule", normalization="predicted", rho=None),
+    "omega-schedule on scale": fuzzy(
+        "omega-schedule", normalization="scale", rho=None, opening=None
+    ),
+    "stiffness-damping": fuzzy("stiffness-damping"),
+    "stiffness-damping by table": fuzzy("stiffness-damping", "table"),
+    "stiffness-damping, signed": fuzzy("stiffness-damping", normalization="chan-signed"),
+    "stiffness-damping-cog by relation": fuzzy("stiffness-damping-cog", "relation"),
+    "stiffness-damping-wide": fuzzy("stiffness-damping-wide"),
+    "track-quality": QualityGains(),
+}
+
+TRACKERS = {
+    "alpha-beta, one-point": ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2), "one-point"),
+    "bank": ParallelBank(),
+    "bank, best": ParallelBank(selection="best"),
+    "imm": InteractingModels(0.2, 3.0),
+    "imm of single axes": InteractingModels(0.2, 3.0, maneuver="cv", joint=False),
+    "window-search": WindowSearch(window=4),
+}
+
+
+@pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])
+def test_it_keeps_its_contract(name):
+    if name in SCHEDULERS:
+        check_scheduler(SCHEDULERS[name])
+    else:
+        check_tracker(TRACKERS[name])
+
+
+def test_nothing_is_left_out():
+    assert {type(s) for s in SCHEDULERS.values()} == {p.factory for p in schedulers}
+    assert set(map(type, TRACKERS.values())) == {p.factory for p in trackers}
+    rules = [s.rules for s in SCHEDULERS.values() if isinstance(s, ft.FuzzyScheduler)]
+    scheduling = {n for n in shipped_rulebases() if ft.load_rulebase(n).scheduler}
+    assert {base.name for base in rules} >= scheduling - {"stiffness-damping-cog"}
+    assert {dict(base.scheduler)["normalization"] for base in rules} == set(normalizations.names())
