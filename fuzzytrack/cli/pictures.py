@@ -57,16 +57,18 @@ def save_picture(
 
 
 def surfaces(system: FuzzySystem, points: int, at: dict[str, float] | None = None) -> Figure:
-    """Surfaces of all outputs; under them α and β, where the outputs are stiffness and damping."""
+    """Surfaces of all outputs; under them α and β, where one of the outputs is stiffness."""
     from matplotlib.figure import Figure
 
     from fuzzytrack.plotting import plot_gain_surfaces, plot_surface
 
-    if at or set(system.rules.output_names) != {"stiffness", "damping"}:
+    if at or "stiffness" not in system.rules.output_names:
         return plot_surface(system, points=points, at=at)[0]
     figure = Figure(figsize=(10.0, 8.8), layout="constrained")
     flat = len(system.rules.inputs) == 1
     axes = figure.subplots(2, 2, subplot_kw=None if flat else {"projection": "3d"})
-    plot_surface(system, points=points, axes=axes[0])
+    if len(system.rules.outputs) == 1:
+        axes[0, 1].remove()
+    plot_surface(system, points=points, axes=axes[0, : len(system.rules.outputs)])
     plot_gain_surfaces(system, points=points, axes=axes[1])
     return figure

@@ -13,7 +13,7 @@ from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.gains.wdomain import alpha_beta_from_w
+from fuzzytrack.gains.wdomain import alpha_beta_from_w, kalata_damping
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.tables import table_writer, write_table
 
@@ -42,7 +42,7 @@ def surface(
 ) -> None:
     """Draw the control surface of a rule base.
 
-    All outputs; α and β as well, where the outputs are stiffness and damping.
+    All outputs; α and β as well, where the outputs are stiffness, or stiffness and damping.
     """
     system = FuzzySystem(load_rulebase(rulebase), method)
     others = system.rules.input_names[2:]
@@ -79,13 +79,17 @@ def grid_table(system: FuzzySystem, points: int, fixed: dict[str, float]) -> dic
 
 
 def gains_of(outputs: dict[str, Array]) -> dict[str, Array]:
-    """α and β of stiffness and damping; nothing for other outputs."""
-    if not {"stiffness", "damping"} <= set(outputs):
+    """α and β of stiffness, with or without damping; nothing for other outputs."""
+    if "stiffness" not in outputs:
         return {}
+    stiffness = outputs["stiffness"]
     # NaN where no rule fires
-    known = ~np.isnan(outputs["stiffness"] + outputs["damping"])
+    known = ~np.isnan(stiffness + outputs.get("damping", 0.0))
+    damping = (
+        outputs["damping"][known] if "damping" in outputs else kalata_damping(stiffness[known])
+    )
     gains = {name: np.full(known.shape, np.nan) for name in ("alpha", "beta")}
-    found = alpha_beta_from_w(outputs["stiffness"][known], outputs["damping"][known])
+    found = alpha_beta_from_w(stiffness[known], damping)
     for name, values in zip(gains, found, strict=True):
         gains[name][known] = values
     return gains

@@ -38,6 +38,7 @@ from fuzzytrack.gains.wdomain import (
     alpha_beta_from_s,
     alpha_beta_from_w,
     alpha_beta_gamma_from_w,
+    kalata_damping,
     w_from_alpha_beta,
     w_from_alpha_beta_gamma,
 )
@@ -67,6 +68,7 @@ __all__ = [
     "is_stable",
     "jury",
     "kalata",
+    "kalata_damping",
     "noise_ratio",
     "optimal_alpha_beta_gamma",
     "optimal_for_acceleration",

@@ -21,6 +21,7 @@ __all__ = [
     "alpha_beta_from_w",
     "alpha_beta_gamma_from_w",
     "bilinear",
+    "kalata_damping",
     "w_from_alpha_beta",
     "w_from_alpha_beta_gamma",
 ]
@@ -82,6 +83,35 @@ def alpha_beta_from_w(
     frequency, damping = nonnegative("omega0", omega0), nonnegative("zeta", zeta)
     alpha, beta = map(np.asarray, bilinear(frequency * _half(dt), damping))
     return alpha[()], beta[()]
+
+
+def kalata_damping(omega0: ArrayLike) -> Floats:
+    """Damping on the curve of the optimal gains, for an eigenfrequency of the w-domain.
+
+    Parameters
+    ----------
+    omega0 : array_like
+        Dimensionless eigenfrequency ω₀, >= 0.
+
+    Returns
+    -------
+    ndarray
+        ζ = √(1/2 + ω₀²/4): with it the gains are those of `fuzzytrack.gains.kalata` at the tracking
+        index λ = 4ω₀².
+
+    Raises
+    ------
+    ValueError
+        If ω₀ is negative or not finite.
+
+    Examples
+    --------
+    >>> from fuzzytrack.gains import kalata_damping
+    >>> float(kalata_damping(1.0).round(4))
+    0.866
+    """
+    stiffness = nonnegative("omega0", omega0)
+    return np.asarray(np.sqrt(0.5 + 0.25 * stiffness * stiffness))[()]
 
 
 def w_from_alpha_beta(

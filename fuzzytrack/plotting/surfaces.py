@@ -17,7 +17,7 @@ from fuzzytrack.fuzzy.inference import output_grid
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
-from fuzzytrack.gains.wdomain import bilinear
+from fuzzytrack.gains.wdomain import bilinear, kalata_damping
 from fuzzytrack.plotting import _figures as shared
 
 __all__ = ["plot_gain_surfaces", "plot_relation", "plot_surface"]
@@ -116,8 +116,9 @@ def plot_gain_surfaces(
     Parameters
     ----------
     rules : RuleBase or FuzzySystem
-        With outputs ``stiffness`` and ``damping``, drawn as α and β by way of the w-domain, or
-        with outputs ``alpha`` and ``beta``, and maybe ``gamma``, drawn as they are.
+        With outputs ``stiffness`` and ``damping``, or ``stiffness`` alone with the damping of
+        Kalata's gains, drawn as α and β by way of the w-domain; or with outputs ``alpha`` and
+        ``beta``, and maybe ``gamma``, drawn as they are.
     points : int
         Points an axis, at least 2.
     method : {"exact", "relation", "table"}, optional
@@ -146,18 +147,21 @@ def plot_gain_surfaces(
     shared.choice("style", style, STYLES)
     outputs = set(system.rules.output_names)
     names: tuple[str, ...] = ("stiffness", "damping")
-    if outputs != set(names):
+    if outputs == {"stiffness"}:
+        names = ("stiffness",)
+    elif outputs != set(names):
         names = ("alpha", "beta", "gamma") if "gamma" in outputs else ("alpha", "beta")
         if outputs != set(names):
             raise ValueError(
                 f"rules: {system.rules.name} has outputs {', '.join(system.rules.output_names)}; "
-                "gains need stiffness, damping or alpha, beta or alpha, beta, gamma"
+                "gains need stiffness, damping or stiffness or alpha, beta or alpha, beta, gamma"
             )
     found = [_values(system, name, points, None, None) for name in names]
     chosen, grid, _ = found[0]
     gains = [values for _, _, values in found]
     if names[0] == "stiffness":
-        gains = list(bilinear(gains[0], gains[1]))
+        damping = gains[1] if len(gains) > 1 else kalata_damping(gains[0])
+        gains = list(bilinear(gains[0], damping))
     labels = list(GAIN_LABELS.values())
     pictures = [_Picture(labels[k], chosen, grid, values) for k, values in enumerate(gains)]
     return _draw(pictures, style, axes)

@@ -268,6 +268,15 @@ def test_surface_without_files_gives_ranges(run):
     assert "wrote" not in text
 
 
+def test_surface_of_a_schedule_of_stiffness_has_gains(run, tmp_path):
+    picture, table = tmp_path / "s.png", tmp_path / "s.csv"
+    result = run("surface", "omega-schedule", "-o", picture, "--csv", table, "--points", "5")
+    assert result.exit_code == 0
+    assert "alpha      0.5572   0.8778" in result.stdout
+    assert table.read_text().splitlines()[0] == "lag,stiffness,alpha,beta"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
 def test_surface_of_one_and_of_three_inputs(run, fails, csv, tmp_path):
     assert run("surface", "valve", "-o", tmp_path / "v.png", "--points", "5").exit_code == 0
     three = csv(LIST, "three.yaml")

@@ -13,6 +13,7 @@ from fuzzytrack.gains import (
     from_abc,
     is_stable,
     kalata,
+    kalata_damping,
     poles,
     w_from_alpha_beta,
     w_from_alpha_beta_gamma,
@@ -265,3 +266,9 @@ def test_impossible_arguments_are_named(value):
 def test_unstable_gains_have_no_inverse(alpha, beta):
     with pytest.raises(ValueError, match="stability triangle"):
         w_from_alpha_beta([0.5, alpha], [0.2, beta])
+
+
+@given(st.floats(1e-3, 3.0))
+def test_the_damping_of_kalatas_gains(omega0):
+    gains = alpha_beta_from_w(omega0, kalata_damping(omega0))
+    assert gains == pytest.approx(kalata(4 * omega0**2), rel=1e-9)

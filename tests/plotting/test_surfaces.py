@@ -9,6 +9,7 @@ import fuzzytrack as ft
 from fuzzytrack.errors import NoRuleFiresWarning
 from fuzzytrack.fuzzy.rulebase import Consequent, Operators, Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Universe, Variable
+from fuzzytrack.gains import kalata
 from fuzzytrack.plotting import plot_gain_surfaces, plot_relation, plot_surface
 
 
@@ -233,3 +234,11 @@ def test_slice_where_no_rule_fires_has_no_crisp_value(valve):
     figure, (_, cut) = plot_relation(base, at=2.5)
     assert len(cut.lines) == 1
     figure.canvas.draw()
+
+
+def test_gains_of_stiffness_alone_are_kalatas():
+    _, axes = plot_gain_surfaces(ft.load_rulebase("omega-schedule"), points=7)
+    for ax, gain in zip(axes, kalata(4 * 0.778**2), strict=True):
+        (line,) = ax.lines
+        assert line.get_ydata()[[0, -1]] == pytest.approx([gain, gain])
+    plt.close("all")
