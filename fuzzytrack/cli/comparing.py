@@ -60,7 +60,11 @@ def trackers_named(text: str) -> dict[str, Tracker]:
     doubled = [name for name in names if names.count(name) > 1]
     if doubled:
         raise ValueError(f"--trackers: {doubled[0]!r} is given twice")
-    return {name: make_tracker(name) for name in names}
+    found = {name: make_tracker(name) for name in names}
+    for name, tracker in found.items():
+        if not getattr(tracker, "causal", True):
+            typer.echo(f"note: {name} looks at the plot that it predicts", err=True)
+    return found
 
 
 def as_json(found: Comparison) -> dict[str, Any]:

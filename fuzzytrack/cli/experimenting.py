@@ -133,8 +133,9 @@ def _write(folder: Path, found: Results) -> list[Path]:
     with whole_file(written[0]) as draft:
         draft.write_text(text + "\n", encoding="utf-8")
     with progress("drawing"):
-        write_report(written[1], found)
-        for name, figure in report_pictures(found).items():
+        pictures = report_pictures(found)
+        write_report(written[1], found, pictures=pictures)
+        for name, figure in pictures.items():
             written.append(folder / f"{name}.png")
             _save(written[-1], figure)
     return written

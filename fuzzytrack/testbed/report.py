@@ -118,7 +118,11 @@ $definitions
 
 
 def write_report(
-    path: str | os.PathLike[str], results: Results, *, title: str | None = None
+    path: str | os.PathLike[str],
+    results: Results,
+    *,
+    title: str | None = None,
+    pictures: Mapping[str, Figure] | None = None,
 ) -> Path:
     """Write what came out of an experiment as one HTML page, pictures included.
 
@@ -130,6 +134,8 @@ def write_report(
         What came out.
     title : str, optional
         Of the page; the name of the scenario unless given.
+    pictures : mapping of str to Figure, optional
+        Those of `report_pictures`, if they are drawn already.
 
     Returns
     -------
@@ -146,13 +152,13 @@ def write_report(
     The page loads nothing from elsewhere. The same results give the same bytes.
     """
     target = check_output(path)
-    pictures = report_pictures(results)
+    drawn = report_pictures(results) if pictures is None else pictures
     page = PAGE.substitute(
         title=escape(title or results.scenario),
         facts=_facts(results),
         errors=_errors(results),
         consistency=_consistency(results),
-        pictures="\n".join(_picture(key, figure) for key, figure in pictures.items()),
+        pictures="\n".join(_picture(key, figure) for key, figure in drawn.items()),
         definitions=_definitions(),
     )
     with whole_file(target) as draft:

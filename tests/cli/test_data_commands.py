@@ -281,3 +281,12 @@ def test_airliner(run, real):
     compared = run("compare", path, "--id", "icao24", *words, "--json")
     (fixed,) = json.loads(compared.stdout)["trackers"]
     assert 15 < fixed["predicted_rmse"] < 16
+
+
+def test_a_tracker_that_looks_ahead_is_said_to(run, plots):
+    words = ("compare", plots, "--noise", "1", "--runs", "2", "--trackers")
+    assert (
+        "bank:selection=hindsight looks at the plot"
+        in run(*words, "bank:selection=hindsight").stderr
+    )
+    assert run(*words, "bank").stderr == ""
