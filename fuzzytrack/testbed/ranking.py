@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Universe
@@ -80,6 +81,8 @@ def stretched(rules: RuleBase, limits: Mapping[str, tuple[float, float]]) -> Rul
             outputs.append(variable)
             continue
         low, high = limits[variable.name]
+        if not low < high:
+            raise RuleBaseError(f"limits of {variable.name} must rise, got {low:g} to {high:g}")
         sets = tuple(
             replace(s, parameters=tuple(_moved(p, universe, low, high) for p in s.parameters))
             for s in variable.sets
