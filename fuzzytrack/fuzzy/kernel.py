@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.fuzzy.inference import Conclusions, conclusions
+from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
@@ -62,6 +63,8 @@ class _Writer:
         self.lines: list[str] = []
         self.known: dict[tuple[str, ...], str] = {}
         self.constants: dict[str, Any] = {"exp": math.exp, "nan": math.nan}
+
+    def inputs(self) -> None:
         for k, variable in enumerate(self.rules.inputs):
             low, high = variable.universe.low, variable.universe.high
             self.lines.append(f"x{k} = min(max(x[{k}], {low!r}), {high!r})")
@@ -82,6 +85,12 @@ class _Writer:
     # ------------------------------------------------------------ exact
 
     def exact(self) -> None:
+        ramps = find_ramps(self.rules)
+        if ramps is not None:
+            self.lines += [f"x{k} = x[{k}]" for k in range(len(self.rules.inputs))]
+            self.lines += ramps.lines()
+            return
+        self.inputs()
         for k, variable in enumerate(self.rules.inputs):
             for j, fuzzy_set in enumerate(variable.sets):
                 self.lines.append(f"g{k}_{j} = {fuzzy_set.expression(f'x{k}')}")
@@ -190,6 +199,7 @@ class _Writer:
     # ------------------------------------------------------------ tables
 
     def relation(self) -> None:
+        self.inputs()
         universes = [v.universe for v in self.rules.inputs]
         for k, u in enumerate(universes):
             place = f"(x{k} - {u.first!r}) / {u.step!r} + 0.5"
@@ -202,6 +212,7 @@ class _Writer:
             self.lines.append(f"y{k} = T{k}[i]")
 
     def table(self) -> None:
+        self.inputs()
         table = self.system.table
         nodes = [len(axis) for axis in table.axes]
         for k, variable in enumerate(self.rules.inputs):

@@ -304,8 +304,11 @@ def _conversion(rules: RuleBase) -> Conversion:
         stiffness, damping = place["stiffness"], place["damping"]
 
         def from_w(outputs: tuple[float, ...]) -> tuple[float, float, float]:
-            alpha, beta = bilinear(outputs[stiffness], outputs[damping])
-            return alpha, beta, 0.0
+            # `fuzzytrack.gains.wdomain.bilinear` with a single division.
+            omega0 = outputs[stiffness]
+            twice, square = 2.0 * outputs[damping] * omega0, omega0 * omega0
+            inverse = 1.0 / (1.0 + twice + square)
+            return 2.0 * twice * inverse, 4.0 * square * inverse, 0.0
 
         return from_w
     first, second = place["alpha"], place["beta"]

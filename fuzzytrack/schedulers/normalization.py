@@ -82,7 +82,8 @@ normalizations: Registry[type[Normalization]] = Registry(
 
 def relative(part: float, whole: float) -> float:
     """``part`` over the larger magnitude of the two, in [-1, 1]; 0 if both are 0."""
-    largest = max(abs(part), abs(whole))
+    size, other = abs(part), abs(whole)
+    largest = size if size > other else other
     return part / largest if largest > 0.0 else 0.0
 
 

@@ -303,7 +303,7 @@ def _run(tracker: LaneTracker, plots: list[list[float]]) -> Iterator[tuple[bool,
         given = [*plot, *[_SIGMA] * n_axes, _PERIOD if k else 0.0]
         b[rows.plot : rows.change] = [tally.number(value) for value in given]
         before = inside.total, tally.total
-        step(b)
+        step(b, 1)
         of_scheduler = inside.total - before[0]
         corrected = not math.isnan(b[rows.gains])
         yield corrected, (of_scheduler, tally.total - before[1] - of_scheduler)

@@ -8,7 +8,7 @@ from typing import ClassVar
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lanes import LaneTracker
-from fuzzytrack.trackers.recursion import step_function
+from fuzzytrack.trackers.recursion import steady_function, step_function
 from fuzzytrack.trackers.rows import Rows
 from fuzzytrack.trackers.runner import Recursion
 
@@ -88,5 +88,8 @@ class AlphaBetaTracker(LaneTracker):
         memory = tuple(float(m) for m in scheduler.initial_memory(n_axes))
         rows = Rows(n_axes, len(memory))
         return Recursion(
-            rows, memory, lambda block: step_function(scheduler, rows, two_point, block)
+            rows,
+            memory,
+            lambda stride: step_function(scheduler, rows, two_point, stride),
+            lambda stride, gains: steady_function(scheduler, rows, stride, gains),
         )

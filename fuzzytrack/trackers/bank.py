@@ -127,7 +127,7 @@ class ParallelBank(LaneTracker):
     def recursion(self, n_axes: int) -> Recursion:
         """The members' recursions and their selection; see `LaneTracker.recursion`."""
         rows = Rows(n_axes, 3 * self.members)
-        return Recursion(rows, (0.0,) * rows.n_memory, lambda block: _step(self, rows, block))
+        return Recursion(rows, (0.0,) * rows.n_memory, lambda stride: _step(self, rows, stride))
 
     def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
         """State of a new track; see `LaneTracker.start`.
@@ -161,56 +161,56 @@ class ParallelBank(LaneTracker):
             )
 
 
-def _step(bank: ParallelBank, rows: Rows, block: int) -> Callable[[Any], None]:
-    """Function that does one time step of a block of single axes, in place in its buffer.
+def _step(bank: ParallelBank, rows: Rows, stride: int) -> Callable[[Any, int], None]:
+    """Function that does one time step of the first lanes, single axes, of a buffer, in place.
 
     The memory holds position, velocity and score of the members, one after another.
     """
-    advance = _members(bank, rows, block)
-    choose = (_mixture if bank.selection == "soft" else _best)(bank, rows, block)
+    advance = _members(bank, rows, stride)
+    choose = (_mixture if bank.selection == "soft" else _best)(bank, rows, stride)
     hindsight = not bank.causal
     nan = math.nan
     x_row, v_row, last_row, gap_row = rows.position, rows.velocity, rows.last_plot, rows.gap
     plots_row, prediction_row, innovation_row = rows.plots, rows.predicted, rows.innovation
     gains_row, plot_row, sigma_row, dt_row = rows.gains, rows.plot, rows.sigma, rows.dt
 
-    def step(b: Any) -> None:
-        for i in range(block):
-            dt = b[dt_row * block + i]
+    def step(b: Any, count: int) -> None:
+        for i in range(min(count, stride)):
+            dt = b[dt_row * stride + i]
             # The first step of a track has no length; its value is not used.
             dt = dt if dt > 0.0 else 1.0
-            gap = b[gap_row * block + i] + dt
-            plots = b[plots_row * block + i]
-            z = b[plot_row * block + i]
+            gap = b[gap_row * stride + i] + dt
+            plots = b[plots_row * stride + i]
+            z = b[plot_row * stride + i]
             seen = z == z
             running = plots >= 2.0
             update = seen & running
             starts = seen & (plots == 1.0)
-            sigma = b[sigma_row * block + i] if update else 1.0
-            v = b[v_row * block + i]
-            prediction = b[x_row * block + i] + v * dt
-            v = (z - b[last_row * block + i]) / gap if starts else v
+            sigma = b[sigma_row * stride + i] if update else 1.0
+            v = b[v_row * stride + i]
+            prediction = b[x_row * stride + i] + v * dt
+            v = (z - b[last_row * stride + i]) / gap if starts else v
 
             least, nearest = advance(b, i, z, v, dt, sigma, update, starts)
             x_chosen, v_chosen, alpha, beta = choose(b, i, least)
 
             prediction = nearest if update & hindsight else prediction
-            b[x_row * block + i] = (x_chosen if running else z) if seen else prediction
-            b[v_row * block + i] = v_chosen if update else v
-            b[last_row * block + i] = z if seen else b[last_row * block + i]
+            b[x_row * stride + i] = (x_chosen if running else z) if seen else prediction
+            b[v_row * stride + i] = v_chosen if update else v
+            b[last_row * stride + i] = z if seen else b[last_row * stride + i]
             counted = plots + 1.0 if plots < 2.0 else 2.0
-            b[plots_row * block + i] = counted if seen else plots
-            b[gap_row * block + i] = 0.0 if seen else gap
-            b[prediction_row * block + i] = prediction if running else nan
-            b[innovation_row * block + i] = z - prediction if update else nan
-            b[gains_row * block + i] = alpha if update else nan
-            b[(gains_row + 1) * block + i] = beta if update else nan
-            b[(gains_row + 2) * block + i] = 0.0 if update else nan
+            b[plots_row * stride + i] = counted if seen else plots
+            b[gap_row * stride + i] = 0.0 if seen else gap
+            b[prediction_row * stride + i] = prediction if running else nan
+            b[innovation_row * stride + i] = z - prediction if update else nan
+            b[gains_row * stride + i] = alpha if update else nan
+            b[(gains_row + 1) * stride + i] = beta if update else nan
+            b[(gains_row + 2) * stride + i] = 0.0 if update else nan
 
     return step
 
 
-def _members(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., tuple[float, float]]:
+def _members(bank: ParallelBank, rows: Rows, stride: int) -> Callable[..., tuple[float, float]]:
     """Function that takes the members a step on; the least score, and its member's prediction."""
     gains, count = bank.gains, bank.members
     alphas, betas = tuple(alpha for alpha, _ in gains), tuple(beta for _, beta in gains)
@@ -223,19 +223,19 @@ def _members(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., tuple[
         b: Any, i: int, z: float, v_first: float, dt: float, sigma: float, update: bool,
         starts: bool,
     ) -> tuple[float, float]:  # fmt: skip
-        least, nearest = infinity, 0.0
+        least, nearest, rate = infinity, 0.0, 1.0 / dt
         for m in range(count):
-            v = b[(v_row + m) * block + i]
-            score = b[(score_row + m) * block + i]
-            prediction = b[(x_row + m) * block + i] + v * dt
+            v = b[(v_row + m) * stride + i]
+            score = b[(score_row + m) * stride + i]
+            prediction = b[(x_row + m) * stride + i] + v * dt
             e = z - prediction if update else 0.0
             added = 0.5 * (e / sigma) * (e / sigma) if scaled else e * e
             score = forget * score + added if update else score
             score = score if score < worst else worst
             x = prediction + alphas[m] * e
-            b[(x_row + m) * block + i] = z if starts else x
-            b[(v_row + m) * block + i] = v_first if starts else v + (betas[m] / dt) * e
-            b[(score_row + m) * block + i] = score
+            b[(x_row + m) * stride + i] = z if starts else x
+            b[(v_row + m) * stride + i] = v_first if starts else v + (betas[m] * rate) * e
+            b[(score_row + m) * stride + i] = score
             nearest = prediction if score < least else nearest
             least = score if score < least else least
         return least, nearest
@@ -243,7 +243,7 @@ def _members(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., tuple[
     return members
 
 
-def _mixture(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., Any]:
+def _mixture(bank: ParallelBank, rows: Rows, stride: int) -> Callable[..., Any]:
     """Function that averages position, velocity, α and β of the members by their scores."""
     gains, count = bank.gains, bank.members
     alphas, betas = tuple(alpha for alpha, _ in gains), tuple(beta for _, beta in gains)
@@ -252,10 +252,10 @@ def _mixture(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., Any]:
     def mixture(b: Any, i: int, least: float) -> tuple[float, float, float, float]:
         total, x, v, alpha, beta = 0.0, 0.0, 0.0, 0.0, 0.0
         for m in range(count):
-            weight = math.exp(0.5 * (least - b[(score_row + m) * block + i]))
+            weight = math.exp(0.5 * (least - b[(score_row + m) * stride + i]))
             total = total + weight
-            x = x + weight * b[(x_row + m) * block + i]
-            v = v + weight * b[(v_row + m) * block + i]
+            x = x + weight * b[(x_row + m) * stride + i]
+            v = v + weight * b[(v_row + m) * stride + i]
             alpha = alpha + weight * alphas[m]
             beta = beta + weight * betas[m]
         return x / total, v / total, alpha / total, beta / total
@@ -263,7 +263,7 @@ def _mixture(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., Any]:
     return mixture
 
 
-def _best(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., Any]:
+def _best(bank: ParallelBank, rows: Rows, stride: int) -> Callable[..., Any]:
     """Function that takes position, velocity, α and β of the first member with the least score."""
     gains, count = bank.gains, bank.members
     alphas, betas = tuple(alpha for alpha, _ in gains), tuple(beta for _, beta in gains)
@@ -273,9 +273,9 @@ def _best(bank: ParallelBank, rows: Rows, block: int) -> Callable[..., Any]:
         x, v, alpha, beta = 0.0, 0.0, 0.0, 0.0
         # Backwards, so that the first of equal ones is left.
         for m in range(count - 1, -1, -1):
-            chosen = b[(score_row + m) * block + i] == least
-            x = b[(x_row + m) * block + i] if chosen else x
-            v = b[(v_row + m) * block + i] if chosen else v
+            chosen = b[(score_row + m) * stride + i] == least
+            x = b[(x_row + m) * stride + i] if chosen else x
+            v = b[(v_row + m) * stride + i] if chosen else v
             alpha = alphas[m] if chosen else alpha
             beta = betas[m] if chosen else beta
         return x, v, alpha, beta

@@ -146,7 +146,7 @@ class InteractingModels(LaneTracker):
         rows = imm_rows(n_axes)
         start = self.start_probability
         memory = (1.0 - start, start, *(0.0,) * (rows.n_memory - PROBABILITIES))
-        return Recursion(rows, memory, lambda block: step_function(self, rows, block))
+        return Recursion(rows, memory, lambda stride: step_function(self, rows, stride))
 
     def maneuver_probability(self, state: TrackState) -> Array:
         """Probability that the target maneuvers.

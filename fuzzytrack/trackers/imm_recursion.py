@@ -176,32 +176,34 @@ def _access(stride: int) -> tuple[Callable[[Any, int], Model], Callable[[Any, in
     return read, write
 
 
-def step_function(tracker: InteractingModels, rows: Rows, block: int) -> Callable[[Any], None]:
-    """Function that does one time step of a block, in place in its buffer.
+def step_function(
+    tracker: InteractingModels, rows: Rows, stride: int
+) -> Callable[[Any, int], None]:
+    """Function that does one time step of the first lanes of a buffer, in place.
 
     It goes through all lanes five times, once for each thing to be done to them, and inside of the
     axes: so the compiler can work on neighbouring lanes at once. What one passage leaves to the
     next lies in rows whose own numbers come later.
     """
-    begin, judge, end = _lane_passages(tracker, rows, block)
-    predict, correct = _axis_passages(tracker, rows, block)
+    begin, judge, end = _lane_passages(tracker, rows, stride)
+    predict, correct = _axis_passages(tracker, rows, stride)
     n_axes = rows.n_axes
 
-    def step(b: Any) -> None:
-        begin(b)
+    def step(b: Any, count: int) -> None:
+        begin(b, count)
         for j in range(n_axes):
-            predict(b, j)
-        judge(b)
+            predict(b, count, j)
+        judge(b, count)
         for j in range(n_axes):
-            correct(b, j)
-        end(b)
+            correct(b, count, j)
+        end(b, count)
 
     return step
 
 
 def _lane_passages(
-    tracker: InteractingModels, rows: Rows, block: int
-) -> tuple[Callable[[Any], None], Callable[[Any], None], Callable[[Any], None]]:
+    tracker: InteractingModels, rows: Rows, stride: int
+) -> tuple[Callable[[Any, int], None], Callable[[Any, int], None], Callable[[Any, int], None]]:
     """What is done once a lane: before the models are predicted, corrected, and at the end."""
     n_axes, nan = rows.n_axes, math.nan
     quiet_stay, maneuver_stay = tracker.quiet_stay, tracker.maneuver_stay
@@ -212,79 +214,79 @@ def _lane_passages(
     quiet_share_row, maneuver_share_row = rows.gains, rows.gains + 1
     ratio_row, exponent_row = rows.gains + 2, rows.change
 
-    def begin(b: Any) -> None:
+    def begin(b: Any, count: int) -> None:
         """Switch probabilities, and the share of the other model where each starts."""
-        for i in range(block):
-            dt = b[dt_row * block + i]
+        for i in range(min(count, stride)):
+            dt = b[dt_row * stride + i]
             # The first step of a track has no length; its value is not used.
             dt = dt if dt > 0.0 else 1.0
-            b[dt_row * block + i] = dt
-            b[gap_row * block + i] = b[gap_row * block + i] + dt
+            b[dt_row * stride + i] = dt
+            b[gap_row * stride + i] = b[gap_row * stride + i] + dt
             seen = True
             for j in range(n_axes):
-                z = b[(plot_row + j) * block + i]
+                z = b[(plot_row + j) * stride + i]
                 seen = seen & (z == z)
             for j in range(n_axes):
-                z = b[(plot_row + j) * block + i]
-                b[(plot_row + j) * block + i] = z if seen else nan
+                z = b[(plot_row + j) * stride + i]
+                b[(plot_row + j) * stride + i] = z if seen else nan
 
-            running = b[plots_row * block + i] >= 2.0
-            was_quiet = b[quiet_row * block + i]
-            was_maneuver = b[maneuver_row * block + i]
+            running = b[plots_row * stride + i] >= 2.0
+            was_quiet = b[quiet_row * stride + i]
+            was_maneuver = b[maneuver_row * stride + i]
             to_maneuver = (1.0 - quiet_stay) * was_quiet
             to_quiet = (1.0 - maneuver_stay) * was_maneuver
             quiet = quiet_stay * was_quiet + to_quiet
             maneuver = maneuver_stay * was_maneuver + to_maneuver
             quiet_share = to_quiet / (quiet if quiet > 0.0 else 1.0)
             maneuver_share = to_maneuver / (maneuver if maneuver > 0.0 else 1.0)
-            b[quiet_share_row * block + i] = quiet_share if running else 0.0
-            b[maneuver_share_row * block + i] = maneuver_share if running else 0.0
-            b[quiet_row * block + i] = quiet if running else was_quiet
-            b[maneuver_row * block + i] = maneuver if running else was_maneuver
-            b[ratio_row * block + i] = 1.0
-            b[exponent_row * block + i] = 0.0
+            b[quiet_share_row * stride + i] = quiet_share if running else 0.0
+            b[maneuver_share_row * stride + i] = maneuver_share if running else 0.0
+            b[quiet_row * stride + i] = quiet if running else was_quiet
+            b[maneuver_row * stride + i] = maneuver if running else was_maneuver
+            b[ratio_row * stride + i] = 1.0
+            b[exponent_row * stride + i] = 0.0
 
-    def judge(b: Any) -> None:
+    def judge(b: Any, count: int) -> None:
         """Probabilities after the plot."""
-        for i in range(block):
-            z = b[plot_row * block + i]
-            update = (z == z) & (b[plots_row * block + i] >= 2.0)
-            quiet, maneuver = b[quiet_row * block + i], b[maneuver_row * block + i]
-            ratio = math.sqrt(_between(1.0 / _RATIO, b[ratio_row * block + i], _RATIO))
-            exponent = _between(-_EXPONENT, b[exponent_row * block + i], _EXPONENT)
+        for i in range(min(count, stride)):
+            z = b[plot_row * stride + i]
+            update = (z == z) & (b[plots_row * stride + i] >= 2.0)
+            quiet, maneuver = b[quiet_row * stride + i], b[maneuver_row * stride + i]
+            ratio = math.sqrt(_between(1.0 / _RATIO, b[ratio_row * stride + i], _RATIO))
+            exponent = _between(-_EXPONENT, b[exponent_row * stride + i], _EXPONENT)
             odds = maneuver * (ratio * _exp(exponent))
             total = quiet + odds
             after_quiet = _between(floor, quiet / total, 1.0 - floor)
             after_maneuver = _between(floor, odds / total, 1.0 - floor)
-            b[quiet_row * block + i] = after_quiet if update else quiet
-            b[maneuver_row * block + i] = after_maneuver if update else maneuver
+            b[quiet_row * stride + i] = after_quiet if update else quiet
+            b[maneuver_row * stride + i] = after_maneuver if update else maneuver
             for k in range(3):
-                b[(gains_row + k) * block + i] = 0.0
+                b[(gains_row + k) * stride + i] = 0.0
 
-    def end(b: Any) -> None:
+    def end(b: Any, count: int) -> None:
         """Count the plot, and scale the gains."""
-        for i in range(block):
-            z, dt = b[plot_row * block + i], b[dt_row * block + i]
-            plots = b[plots_row * block + i]
+        for i in range(min(count, stride)):
+            z, dt = b[plot_row * stride + i], b[dt_row * stride + i]
+            plots = b[plots_row * stride + i]
             seen = z == z
             update = seen & (plots >= 2.0)
             counted = plots + 1.0 if plots > 0.0 else first_count
             counted = counted if counted < 2.0 else 2.0
-            b[plots_row * block + i] = counted if seen else plots
-            b[gap_row * block + i] = 0.0 if seen else b[gap_row * block + i]
-            alpha = b[gains_row * block + i] / n_axes
-            beta = b[(gains_row + 1) * block + i] * dt / n_axes
-            gamma = 2.0 * b[(gains_row + 2) * block + i] * dt * dt / n_axes
-            b[gains_row * block + i] = alpha if update else nan
-            b[(gains_row + 1) * block + i] = beta if update else nan
-            b[(gains_row + 2) * block + i] = gamma if update else nan
+            b[plots_row * stride + i] = counted if seen else plots
+            b[gap_row * stride + i] = 0.0 if seen else b[gap_row * stride + i]
+            alpha = b[gains_row * stride + i] / n_axes
+            beta = b[(gains_row + 1) * stride + i] * dt / n_axes
+            gamma = 2.0 * b[(gains_row + 2) * stride + i] * dt * dt / n_axes
+            b[gains_row * stride + i] = alpha if update else nan
+            b[(gains_row + 1) * stride + i] = beta if update else nan
+            b[(gains_row + 2) * stride + i] = gamma if update else nan
 
     return begin, judge, end
 
 
 def _axis_passages(
-    tracker: InteractingModels, rows: Rows, block: int
-) -> tuple[Callable[[Any, int], None], Callable[[Any, int], None]]:
+    tracker: InteractingModels, rows: Rows, stride: int
+) -> tuple[Callable[[Any, int, int], None], Callable[[Any, int, int], None]]:
     """What is done for each axis of a lane: prediction of the models, and their correction."""
     nan = math.nan
     quiet_q, maneuver_q = tracker.quiet_sigma**2, tracker.maneuver_sigma**2
@@ -295,54 +297,54 @@ def _axis_passages(
     start_sigma = tracker.acceleration_sigma
     start_33 = maneuver_q if start_sigma is None else start_sigma**2
     start_33 = start_33 if accelerates else 0.0
-    read, write = _access(block)
+    read, write = _access(stride)
     models_row, maneuver_row = rows.memory + PROBABILITIES, rows.memory + 1
     x_row, v_row, a_row = rows.position, rows.velocity, rows.acceleration
     last_row, gap_row, plots_row, gains_row = rows.last_plot, rows.gap, rows.plots, rows.gains
     prediction_row, innovation_row = rows.predicted, rows.innovation
-    plot_row, sigma_row, dt_row = rows.plot, rows.sigma, rows.dt
+    plot_row, sigma_row, dt_row, noise_row = rows.plot, rows.sigma, rows.dt, rows.noise
     quiet_share_row, maneuver_share_row = rows.gains, rows.gains + 1
     ratio_row, exponent_row = rows.gains + 2, rows.change
 
-    def predict(b: Any, j: int) -> None:
+    def predict(b: Any, count: int, j: int) -> None:
         """Mix and predict; likelihood of the maneuvering model over that of the quiet one."""
-        quiet_at = (models_row + 2 * j * MODEL) * block
-        maneuver_at = quiet_at + MODEL * block
-        for i in range(block):
-            dt = b[dt_row * block + i]
+        quiet_at = (models_row + 2 * j * MODEL) * stride
+        maneuver_at = quiet_at + MODEL * stride
+        for i in range(min(count, stride)):
+            dt = b[dt_row * stride + i]
             one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
-            mixed_one = _mixed(one, two, b[quiet_share_row * block + i])
-            mixed_two = _mixed(two, one, b[maneuver_share_row * block + i])
+            mixed_one = _mixed(one, two, b[quiet_share_row * stride + i])
+            mixed_two = _mixed(two, one, b[maneuver_share_row * stride + i])
             one = _predicted(mixed_one, dt, quiet_q, False)
             two = _predicted(mixed_two, dt, maneuver_q, accelerates)
             write(b, quiet_at + i, one)
             write(b, maneuver_at + i, two)
 
-            running = b[plots_row * block + i] >= 2.0
-            z, sigma = b[(plot_row + j) * block + i], b[(sigma_row + j) * block + i]
+            running = b[plots_row * stride + i] >= 2.0
+            z, sigma = b[(plot_row + j) * stride + i], b[(sigma_row + j) * stride + i]
             update = (z == z) & running
-            prediction = one[0] + b[maneuver_row * block + i] * (two[0] - one[0])
-            b[(prediction_row + j) * block + i] = prediction if running else nan
-            b[(innovation_row + j) * block + i] = z - prediction if update else nan
+            prediction = one[0] + b[maneuver_row * stride + i] * (two[0] - one[0])
+            b[(prediction_row + j) * stride + i] = prediction if running else nan
+            b[(innovation_row + j) * stride + i] = z - prediction if update else nan
 
             r = variance if fixed else sigma * sigma
             r = r if z == z else 1.0
-            b[(sigma_row + j) * block + i] = r
+            b[(noise_row + j) * stride + i] = r
             s_one, s_two = one[3] + r, two[3] + r
             e_one, e_two = z - one[0], z - two[0]
             exponent = 0.5 * (e_one * e_one / s_one - e_two * e_two / s_two)
-            ratio = b[ratio_row * block + i]
-            b[ratio_row * block + i] = ratio * (s_one / s_two)
-            b[exponent_row * block + i] = b[exponent_row * block + i] + exponent
+            ratio = b[ratio_row * stride + i]
+            b[ratio_row * stride + i] = ratio * (s_one / s_two)
+            b[exponent_row * stride + i] = b[exponent_row * stride + i] + exponent
 
-    def correct(b: Any, j: int) -> None:
+    def correct(b: Any, count: int, j: int) -> None:
         """Start or correct the models, and take their mean."""
-        quiet_at = (models_row + 2 * j * MODEL) * block
-        maneuver_at = quiet_at + MODEL * block
-        for i in range(block):
+        quiet_at = (models_row + 2 * j * MODEL) * stride
+        maneuver_at = quiet_at + MODEL * stride
+        for i in range(min(count, stride)):
             one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
-            z, r = b[(plot_row + j) * block + i], b[(sigma_row + j) * block + i]
-            plots, gap = b[plots_row * block + i], b[gap_row * block + i]
+            z, r = b[(plot_row + j) * stride + i], b[(noise_row + j) * stride + i]
+            plots, gap = b[plots_row * stride + i], b[gap_row * stride + i]
             seen, unknown = z == z, plots == 1.0
             s_one, s_two = one[3] + r, two[3] + r
             e_one, e_two = z - one[0] if seen else 0.0, z - two[0] if seen else 0.0
@@ -356,14 +358,14 @@ def _axis_passages(
             write(b, quiet_at + i, one)
             write(b, maneuver_at + i, two)
 
-            maneuver, last = b[maneuver_row * block + i], b[(last_row + j) * block + i]
+            maneuver, last = b[maneuver_row * stride + i], b[(last_row + j) * stride + i]
             for k in range(3):
                 gain = gains_one[k] + maneuver * (gains_two[k] - gains_one[k])
-                b[(gains_row + k) * block + i] = b[(gains_row + k) * block + i] + gain
+                b[(gains_row + k) * stride + i] = b[(gains_row + k) * stride + i] + gain
             x = one[0] + maneuver * (two[0] - one[0])
-            b[(x_row + j) * block + i] = x if seen | (plots > 0.0) else nan
-            b[(v_row + j) * block + i] = one[1] + maneuver * (two[1] - one[1])
-            b[(a_row + j) * block + i] = one[2] + maneuver * (two[2] - one[2])
-            b[(last_row + j) * block + i] = z if seen else last
+            b[(x_row + j) * stride + i] = x if seen | (plots > 0.0) else nan
+            b[(v_row + j) * stride + i] = one[1] + maneuver * (two[1] - one[1])
+            b[(a_row + j) * stride + i] = one[2] + maneuver * (two[2] - one[2])
+            b[(last_row + j) * stride + i] = z if seen else last
 
     return predict, correct

@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import math
+import operator
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.hop import Hop
+from fuzzytrack.trackers.result import KEPT, TrackResult
 from fuzzytrack.trackers.rows import Rows
-from fuzzytrack.trackers.runner import Recursion, Runner
+from fuzzytrack.trackers.runner import InfinitePlotError, Recursion, Runner
 from fuzzytrack.trackers.state import Gains, TrackState, spread
 
 __all__ = ["LaneTracker", "announce", "runner"]
 
 Array = NDArray[np.float64]
+
+GAINS = ("alpha", "beta", "gamma")
 
 
 class LaneTracker(ABC):
@@ -59,6 +65,8 @@ class LaneTracker(ABC):
         sigma: ArrayLike | None = None,
         *,
         state: TrackState | None = None,
+        keep: Sequence[str] | None = None,
+        threads: int | None = None,
     ) -> TrackResult:
         """Track plots over time.
 
@@ -72,6 +80,13 @@ class LaneTracker(ABC):
             Standard deviation of the plots (m), broadcast against `z`; needed by some schedulers.
         state : TrackState, optional
             State from which to go on; a new track unless given.
+        keep : sequence of str, optional
+            What the result is to hold, out of `fuzzytrack.trackers.result.KEPT`: predicted,
+            filtered, velocity, acceleration, innovation, gains. All of it unless given. Less is
+            faster, and takes less memory.
+        threads : int, optional
+            Threads that share the tracks of a large job; all processors unless given. The numbers
+            do not depend on it.
 
         Returns
         -------
@@ -82,27 +97,36 @@ class LaneTracker(ABC):
         DataError
             If a plot is infinite, or times are not finite and increasing; says where.
         ValueError
-            If shapes do not fit, or the scheduler needs `sigma`.
+            If shapes do not fit, the scheduler needs `sigma`, a name in `keep` is unknown, or
+            `threads` is less than 1.
         """
+        wanted = _check_keep(keep)
+        _check_threads(threads)
         plots = np.asarray(z, dtype=np.float64)
         times = np.asarray(t, dtype=np.float64)
         layout = _Layout.of(plots, self.coupled)
-        _check_plots(plots)
         dts = _time_steps(times, plots.shape, state)
         core = runner(self, layout.lane_axes)
         _check_state(plots, state, core.rows)
-        after, raw = core(
-            core.fresh(layout.lanes) if state is None else state.lanes,
-            layout.to_lanes(plots),
-            layout.times_to_lanes(dts),
-            layout.to_lanes(self._sigma(sigma, plots)),
-        )
-        outputs = {name: layout.from_lanes(values) for name, values in raw.items()}
-        gains = Gains(*(outputs.pop(name) for name in ("alpha", "beta", "gamma")))
+        sigmas = layout.to_lanes(self._sigma(sigma, plots))
+        try:
+            after, raw = core(
+                core.fresh(layout.lanes) if state is None else state.lanes,
+                layout.to_lanes(plots),
+                layout.times_to_lanes(dts),
+                sigmas,
+                keep=[part for name in wanted for part in (GAINS if name == "gains" else (name,))],
+                threads=threads,
+            )
+        except InfinitePlotError:
+            raise _infinite_plot(plots) from None
+        outputs: dict[str, Any] = {name: layout.from_lanes(raw[name]) for name in raw}
+        if "gains" in wanted:
+            outputs["gains"] = Gains(*(outputs.pop(name) for name in GAINS))
         last = state
         if len(plots):
             last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
-        return TrackResult(time=times, measured=plots, gains=gains, state=last, **outputs)
+        return TrackResult.of(times, plots, last, outputs)
 
     def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
         """State of a new track, or batch of tracks, after a first plot.
@@ -135,26 +159,66 @@ class LaneTracker(ABC):
         DataError, ValueError
             As for `run`.
         """
-        return self._one_step(state, z, t, sigma)
+        after = self._hop(state, z, t, sigma)
+        return self._one_step(state, z, t, sigma) if after is None else after
+
+    def compile(self, n_axes: int = 1) -> None:
+        """Compile now what `run` compiles when a job is large, and make `step` run compiled.
+
+        Until then `step` runs in plain Python, unless a large `run` went before: a stream of plots
+        never stops for the compiler. Compiled code is kept on disk for the next process.
+
+        Parameters
+        ----------
+        n_axes : int
+            Axes of the plots.
+        """
+        runner(self, n_axes if self.coupled else 1).compile()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_hops"}
+
+    @cached_property
+    def _hops(self) -> dict[tuple[int, ...], Hop]:
+        """Short ways to a next state, by shape of the plots."""
+        return {}
+
+    def _hop(
+        self, state: TrackState, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
+    ) -> TrackState | None:
+        """State after one more plot by compiled code; None where that is not for it."""
+        hop = self._hops.get(state.shape)
+        if hop is None:
+            layout = _Layout.of(np.empty((0, *state.shape)), self.coupled)
+            core = runner(self, layout.lane_axes)
+            if core.hop is None:
+                return None
+            hop = self._hops[state.shape] = Hop(core, state.shape, layout.lanes, self.needs_sigma)
+        return hop(state, z, t, sigma)
 
     def _one_step(
         self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
     ) -> TrackState:
         plots, times = np.asarray(z, dtype=np.float64)[None], np.asarray(t, dtype=np.float64)[None]
         layout = _Layout.of(plots, self.coupled)
-        _check_plots(plots)
+        if np.isinf(plots).any():
+            raise _infinite_plot(plots)
         core = runner(self, layout.lane_axes)
         _check_state(plots, state, core.rows)
         dts = layout.times_to_lanes(_time_steps(times, plots.shape, state))
         deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
         sigmas = layout.to_lanes(self._sigma(deviation, plots))
         shape = (layout.lanes, layout.lane_axes)
-        after = core.step(
-            core.fresh(layout.lanes) if state is None else state.lanes,
-            plots.reshape(shape),
-            dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
-            np.broadcast_to(sigmas[0], shape).tolist(),
-        )
+        lanes = core.fresh(layout.lanes) if state is None else state.lanes
+        if core.native:
+            after, _ = core(lanes, plots.reshape(1, *shape), dts, sigmas, True, (), 1)
+        else:
+            after = core.step(
+                lanes,
+                plots.reshape(shape),
+                dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
+                np.broadcast_to(sigmas[0], shape).tolist(),
+            )
         return TrackState(np.array(times[0]), plots.shape[1:], after, core.rows)
 
     def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
@@ -276,11 +340,25 @@ class _Layout:
         return spread(values, self.shape, self.lane_axes)
 
 
-def _check_plots(plots: Array) -> None:
-    bad = np.isinf(plots)
-    if bad.any():
-        place = tuple(int(k) for k in np.argwhere(bad)[0])
-        raise DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
+def _check_keep(keep: Sequence[str] | None) -> tuple[str, ...]:
+    if keep is None:
+        return KEPT
+    # A word is a sequence of letters.
+    names = (keep,) if isinstance(keep, str) else tuple(keep)
+    for name in names:
+        if name not in KEPT:
+            raise ValueError(f"keep: unknown {name!r}; out of {', '.join(KEPT)}")
+    return tuple(name for name in KEPT if name in names)
+
+
+def _check_threads(threads: int | None) -> None:
+    if threads is not None and operator.index(threads) < 1:
+        raise ValueError(f"threads must be at least 1, got {threads}")
+
+
+def _infinite_plot(plots: Array) -> DataError:
+    place = tuple(int(k) for k in np.argwhere(np.isinf(plots))[0])
+    return DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
 
 
 def _check_state(plots: Array, state: TrackState | None, rows: Rows) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
+import uuid
 from collections.abc import Callable
 from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any
@@ -13,13 +14,17 @@ import numpy as np
 __all__ = ["compiled", "fingerprint"]
 
 _LONG_TUPLE = 16
+#: How functions are compiled and named here; what another scheme left on disk is not for us.
+_SCHEME = 2
 
 
 class _UnknownContentError(Exception):
     """A value whose content cannot be told."""
 
 
-def compiled(function: Callable[..., Any], digest: str | None = None) -> Callable[..., Any]:
+def compiled(
+    function: Callable[..., Any], digest: str | None = None, *, nogil: bool = False
+) -> Callable[..., Any]:
     """Compile a plain Python function together with the plain functions that it refers to.
 
     Schedulers are written in plain Python and refer to helpers through their module and enclosing
@@ -32,6 +37,8 @@ def compiled(function: Callable[..., Any], digest: str | None = None) -> Callabl
         Function of scalars and tuples, without recursion.
     digest : str, optional
         What the function is known by on disk, see `fingerprint`; without it nothing is kept there.
+    nogil : bool
+        Whether other threads may run meanwhile.
 
     Returns
     -------
@@ -47,7 +54,8 @@ def compiled(function: Callable[..., Any], digest: str | None = None) -> Callabl
             if id(value) not in known:
                 # Helpers are inlined whatever their size: a call keeps a loop from vectorising.
                 inline = value is not function
-                jit = numba.njit(error_model="numpy", forceinline=inline)
+                free = nogil and not inline
+                jit = numba.njit(error_model="numpy", forceinline=inline, nogil=free)
                 known[id(value)] = jit(rebuild(value))
             return known[id(value)]
         if isinstance(value, tuple) and len(value) > _LONG_TUPLE:
@@ -60,9 +68,14 @@ def compiled(function: Callable[..., Any], digest: str | None = None) -> Callabl
         scope["__builtins__"] = original.__globals__.get("__builtins__", __builtins__)
         scope["__name__"] = original.__globals__.get("__name__", __name__)
         cells = tuple(CellType(prepare(c.cell_contents)) for c in original.__closure__ or ())
-        return FunctionType(
+        rebuilt = FunctionType(
             original.__code__, scope, original.__name__, original.__defaults__, cells
         )
+        # Two functions of one name, one compiled here and one read from disk, would count as one.
+        known_as = digest if original is function else None
+        content = known_as or fingerprint(original) or uuid.uuid4().hex
+        rebuilt.__qualname__ = f"{original.__name__}_{content[:24]}"
+        return rebuilt
 
     dispatcher: Any = prepare(function)
     if digest is not None:
@@ -88,7 +101,7 @@ def fingerprint(function: Callable[..., Any]) -> str | None:
     import llvmlite
     import numba
 
-    made_by = (sys.version_info[:2], numba.__version__, llvmlite.__version__)
+    made_by = (_SCHEME, sys.version_info[:2], numba.__version__, llvmlite.__version__)
     digest = hashlib.sha256(repr(made_by).encode())
     try:
         _add(digest, function, {})

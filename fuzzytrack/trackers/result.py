@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.trackers.state import Gains, TrackState
 
-__all__ = ["TrackResult"]
+__all__ = ["KEPT", "TrackResult"]
 
 Array = NDArray[np.float64]
 
+#: What a run may be asked to keep.
+KEPT = ("predicted", "filtered", "velocity", "acceleration", "innovation", "gains")
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class TrackResult:
     """Tracks over time, as arrays: time first, axis of space last, batch between.
+
+    What a run was not asked to keep is missing; to ask for it raises an AttributeError.
 
     Attributes
     ----------
@@ -47,6 +54,31 @@ class TrackResult:
     innovation: Array
     gains: Gains
     state: TrackState | None
+
+    @classmethod
+    def of(
+        cls, time: Array, measured: Array, state: TrackState | None, kept: Mapping[str, Any]
+    ) -> TrackResult:
+        """Result that holds some of `KEPT`, by their names."""
+        result = cls.__new__(cls)
+        fields = {"time": time, "measured": measured, "state": state, **kept}
+        for name, value in fields.items():
+            object.__setattr__(result, name, value)
+        return result
+
+    # Called only for what is not there.
+    def __getattr__(self, name: str) -> Any:
+        if name in KEPT:
+            raise AttributeError(f"{name} was not kept; run with keep=(..., {name!r})")
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __repr__(self) -> str:
+        return f"TrackResult(shape={self.measured.shape}, kept={self.kept})"
+
+    @property
+    def kept(self) -> tuple[str, ...]:
+        """What of `KEPT` is there."""
+        return tuple(name for name in KEPT if name in self.__dict__)
 
     @property
     def coasted(self) -> NDArray[np.bool_]:

@@ -41,7 +41,7 @@ class Rows:
 
     @property
     def gap(self) -> int:
-        """Time since the last plot seen (s)."""
+        """Time since the last plot seen (s); 0 where nothing will ask for it."""
         return 4 * self.n_axes
 
     @property
@@ -86,7 +86,7 @@ class Rows:
 
     @property
     def sigma(self) -> int:
-        """First of `n_axes` rows of its standard deviation (m), likewise."""
+        """First of `n_axes` rows of its standard deviation (m), likewise; a step leaves it."""
         return self.kept + self.n_axes
 
     @property
@@ -96,10 +96,21 @@ class Rows:
 
     @property
     def change(self) -> int:
-        """First of `n_axes` rows of the change of observation (m)."""
+        """First of `n_axes` rows of the change of observation (m), for use within a step."""
         return self.kept + 2 * self.n_axes + 1
+
+    @property
+    def noise(self) -> int:
+        """First of `n_axes` rows of the standard deviation or variance that a step works with."""
+        return self.kept + 3 * self.n_axes + 1
 
     @property
     def total(self) -> int:
         """Number of all rows."""
-        return self.kept + 3 * self.n_axes + 1
+        return self.kept + 4 * self.n_axes + 1
+
+    def output(self, name: str) -> int:
+        """First row of an output, by its name in a result."""
+        if name in ("alpha", "beta", "gamma"):
+            return self.gains + ("alpha", "beta", "gamma").index(name)
+        return int(getattr(self, "position" if name == "filtered" else name))

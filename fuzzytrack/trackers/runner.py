@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -11,19 +13,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.trackers.native import compiled, fingerprint
+from fuzzytrack.trackers.passage import BLOCK, OUTPUTS, aligned, hop_function, run_function
 from fuzzytrack.trackers.rows import Rows
 
-__all__ = ["Recursion", "Runner"]
+__all__ = ["InfinitePlotError", "Recursion", "Runner"]
 
 Array = NDArray[np.float64]
 
-#: Lanes a block. Rows 4,096 bytes apart would share cache sets and evict one another.
-BLOCK = 248
 #: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
 #: sooner.
 COMPILE_ABOVE = 200_000
+#: Coordinates of a job from which several threads pay.
+THREADS_ABOVE = 500_000
+#: Parts of a job for each thread, so that none waits long for the last.
+PARTS = 4
 
 _GAINS = ("alpha", "beta", "gamma")
+
+
+class InfinitePlotError(ValueError):
+    """A plot is infinite."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +46,21 @@ class Recursion:
     memory : tuple of float
         Memory of a lane that has seen nothing, as long as `rows` says.
     step : callable
-        Makes, for a number of lanes, the function that does one time step of them in place in their
-        buffer, in which row `r` of lane `i` is at ``r * lanes + i``. It finds plot, sigma and dt
-        filled in, and leaves state and results. It is run in plain Python over a list and compiled
-        over an array, so it has loops, selects and numbers in it, and calls nothing else.
+        ``step(stride)`` makes the function ``f(buffer, count)`` that does one time step of the
+        first `count` lanes, `stride` at most, in place in their buffer, in which row `r` of lane
+        `i` is at ``r * stride + i``. It finds plot, sigma and dt filled in, and leaves state and
+        results. It is run in plain Python over a list and compiled over an array, so it has loops,
+        selects and numbers in it, and calls nothing else.
+    steady : callable, optional
+        ``steady(stride, gains)`` makes the function ``f(buffer, count, dt)`` that does the same for
+        lanes that have all seen two plots and have their time step in common, only faster, and
+        writes the gains down or not.
     """
 
     rows: Rows
     memory: tuple[float, ...]
-    step: Callable[[int], Callable[[Any], None]]
+    step: Callable[[int], Callable[[Any, int], None]]
+    steady: Callable[[int, bool], Callable[[Any, int, float], None]] | None = None
 
 
 @dataclass(eq=False)
@@ -60,10 +75,16 @@ class Runner:
     work : int
         Coordinates that were tracked so far, or are announced: a job in many parts may raise it
         before the first.
+    hop : callable or None
+        After `compile`, the function of `fuzzytrack.trackers.passage.hop_function`.
     """
 
     recursion: Recursion
     work: int = 0
+    hop: Callable[..., int] | None = field(default=None, init=False, repr=False)
+    _compiled_runs: dict[bool, Callable[..., int]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     @property
     def rows(self) -> Rows:
@@ -84,6 +105,8 @@ class Runner:
         dts: Array,
         sigmas: Array,
         native: bool | None = None,
+        keep: Sequence[str] = OUTPUTS,
+        threads: int | None = None,
     ) -> tuple[Array, dict[str, Array]]:
         """Run over time.
 
@@ -96,19 +119,31 @@ class Runner:
         native : bool, optional
             Whether to run compiled; unless given, once the jobs together are large enough to pay
             for the compilation. The results are the same.
+        keep : sequence of str
+            Outputs wanted.
+        threads : int, optional
+            Threads that share the lanes of a compiled job; unless given one, or for a large job
+            all processors.
 
         Returns
         -------
         lanes : ndarray
             The lanes after the last step.
         outputs : dict of ndarray
-            predicted, filtered, velocity, acceleration, innovation, shaped as `plots`, and alpha,
-            beta, gamma, shape (n_steps, lanes).
+            Of `keep`: predicted, filtered, velocity, acceleration, innovation, shaped as `plots`,
+            and alpha, beta, gamma, shape (n_steps, lanes).
+
+        Raises
+        ------
+        InfinitePlotError
+            If a plot is infinite.
         """
         if native is None:
             native = self.work + plots.size > COMPILE_ABOVE
         self.work += plots.size
-        return (self._run_compiled if native else self._run_plain)(lanes, plots, dts, sigmas)
+        if native:
+            return self._run_compiled(lanes, plots, dts, sigmas, keep, threads)
+        return self._run_plain(lanes, plots, dts, sigmas, keep)
 
     def step(
         self, lanes: Array, plots: Array, dts: list[float], sigmas: list[list[float]]
@@ -129,21 +164,23 @@ class Runner:
         ndarray
             The lanes after the step.
         """
-        step, kept, scratch = self._plain_step, self.rows.kept, [0.0] * self.rows.n_axes
+        step, kept, scratch = self._plain_step, self.rows.kept, [0.0] * (2 * self.rows.n_axes)
         after = []
         for lane, z, sigma, dt in zip(lanes.T.tolist(), plots.tolist(), sigmas, dts, strict=True):
             b = [*lane, *z, *sigma, dt, *scratch]
-            step(b)
+            step(b, 1)
             after.append(b[:kept])
-        return np.array(after).reshape(len(after), kept).T
+        return np.ascontiguousarray(np.array(after).reshape(len(after), kept).T)
 
     @cached_property
-    def _plain_step(self) -> Callable[[Any], None]:
+    def _plain_step(self) -> Callable[[Any, int], None]:
         return self.recursion.step(1)
 
     def _run_plain(
-        self, lanes: Array, plots: Array, dts: Array, sigmas: Array
+        self, lanes: Array, plots: Array, dts: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
     ) -> tuple[Array, dict[str, Array]]:
+        if np.isinf(plots).any():
+            raise InfinitePlotError
         step, rows = self._plain_step, self.rows
         n_steps, count, _ = plots.shape
         # What a step is given, in the order of the rows: plot, sigma, time step.
@@ -157,7 +194,7 @@ class Runner:
             history = []
             for row in given[:, lane].tolist():
                 b[rows.plot : rows.change] = row
-                step(b)
+                step(b, 1)
                 history.append(b[:n_state] + b[rows.predicted : rows.kept])
             if history:
                 trace[:, lane] = history
@@ -165,121 +202,96 @@ class Runner:
         # What lies between state and results is not in the trace.
         skipped = rows.predicted - n_state
         outputs = {}
-        for name, row in self._positions.items():
+        for name in keep:
+            row = rows.output(name)
             column = row if row < n_state else row - skipped
-            outputs[name] = trace[:, :, column : column + rows.n_axes].copy()
-        for k, name in enumerate(_GAINS):
-            outputs[name] = trace[:, :, rows.gains - skipped + k].copy()
+            part = trace[:, :, column : column + rows.n_axes]
+            outputs[name] = trace[:, :, column].copy() if name in _GAINS else part.copy()
         return after, outputs
 
-    @property
-    def _positions(self) -> dict[str, int]:
-        """Outputs with an axis of space, and their first rows."""
-        rows = self.rows
-        return {
-            "predicted": rows.predicted,
-            "filtered": rows.position,
-            "velocity": rows.velocity,
-            "acceleration": rows.acceleration,
-            "innovation": rows.innovation,
-        }
-
     def _run_compiled(
-        self, lanes: Array, plots: Array, dts: Array, sigmas: Array
+        self,
+        lanes: Array,
+        plots: Array,
+        dts: Array,
+        sigmas: Array,
+        keep: Sequence[str] = OUTPUTS,
+        threads: int | None = None,
     ) -> tuple[Array, dict[str, Array]]:
         n_steps, count, _ = plots.shape
         after = np.array(lanes, order="C")
-        outputs = {name: np.empty(plots.shape) for name in self._positions}
-        outputs |= {name: np.empty((n_steps, count)) for name in _GAINS}
+        shapes = {name: plots.shape[:2] if name in _GAINS else plots.shape for name in keep}
+        outputs = {name: np.empty(shape) for name, shape in shapes.items()}
         inputs = [np.ascontiguousarray(array).reshape(-1) for array in (plots, dts, sigmas)]
-        dt_strides = _strides(dts.shape, (n_steps, count))
-        sigma_strides = _strides(sigmas.shape, plots.shape)
-        scratch = np.zeros(self.rows.total * BLOCK)
-        for first in range(0, count, BLOCK):
-            self._compiled_run(
-                scratch, n_steps, count, first, min(BLOCK, count - first),
-                *inputs, dt_strides, sigma_strides, after.reshape(-1),
-                *(array.reshape(-1) for array in outputs.values()),
-            )  # fmt: skip
+        given = (
+            *inputs, _strides(dts.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
+            after.reshape(-1),
+            tuple(outputs[n].reshape(-1) if n in outputs else np.empty(0) for n in OUTPUTS),
+        )  # fmt: skip
+        run = self.compiled_run(bool({*keep} & {*_GAINS}))
+
+        def part(ends: tuple[int, int]) -> int:
+            return run(aligned(self.rows.total * BLOCK), n_steps, count, *ends, *given)
+
+        infinite = _in_parts(part, count, _threads(threads, plots.size))
+        if infinite:
+            raise InfinitePlotError
         return after, outputs
 
-    @cached_property
-    def _compiled_run(self) -> Callable[..., None]:
-        # Compiled one by one, lest they be inlined into each other at every use.
-        step = self.recursion.step(BLOCK)
-        # What is kept on disk is known by all that it is made of, in plain Python.
-        digest = fingerprint(_run_function(step, _copy_in, _copy_out, self.rows, BLOCK))
-        copies = _compiled_once(_copy_in), _compiled_once(_copy_out)
-        return compiled(_run_function(compiled(step), *copies, self.rows, BLOCK), digest)
+    @property
+    def native(self) -> bool:
+        """Whether there is compiled code."""
+        return bool(self._compiled_runs)
+
+    def compile(self) -> None:
+        """Compile now whatever is ever going to be."""
+        if self.hop is not None:
+            return
+        n_axes, step = self.rows.n_axes, self.recursion.step(BLOCK)
+        lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
+        for keep in (OUTPUTS, ()):
+            self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], keep, 1)
+        digest = fingerprint(hop_function(step, self.rows))
+        hop = compiled(hop_function(step, self.rows, _compiled_once), digest)
+        buffer = aligned(self.rows.total * BLOCK)
+        hop(buffer, 1, lanes, one.reshape(-1), 1.0, 1.0, lanes)
+        # The one signature there is, without asking again which it is.
+        self.hop = hop.overloads[hop.signatures[0]].entry_point  # type: ignore[attr-defined]
+
+    def compiled_run(self, gains: bool) -> Callable[..., int]:
+        """Compiled function that runs lanes over time; with the gains of every step or not."""
+        if gains not in self._compiled_runs:
+            step, steady = self.recursion.step(BLOCK), self.recursion.steady
+            parts = (step, None if steady is None else steady(BLOCK, gains), gains, self.rows)
+            # What is kept on disk is known by all that it is made of, in plain Python.
+            digest = fingerprint(run_function(*parts))
+            function = run_function(*parts, prepare=_compiled_once)
+            self._compiled_runs[gains] = compiled(function, digest, nogil=True)
+        return self._compiled_runs[gains]
 
 
-_compiled_once = lru_cache(maxsize=None)(compiled)
+_compiled_once = lru_cache(maxsize=64)(compiled)
 
 
-# Views first: the compiler sees that their indices cannot be negative, and copies in one go.
-def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int) -> None:
-    into = b[row : row + count]
-    if stride == 0:
-        value = source[start]
-        for i in range(count):
-            into[i] = value
-    else:
-        out_of = source[start:]
-        for i in range(count):
-            into[i] = out_of[i * stride]
+def _threads(wanted: int | None, coordinates: int) -> int:
+    if wanted is not None:
+        return wanted
+    if coordinates < THREADS_ABOVE:
+        return 1
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
 
 
-def _copy_out(b: Any, row: int, target: Any, start: int, stride: int, count: int) -> None:
-    out_of, into = b[row : row + count], target[start:]
-    for i in range(count):
-        into[i * stride] = out_of[i]
-
-
-def _run_function(
-    step: Callable[[Any], None],
-    copy_in: Callable[..., None],
-    copy_out: Callable[..., None],
-    rows: Rows,
-    block: int,
-) -> Callable[..., None]:
-    """Function that runs the lanes ``first`` to ``first + count`` of a job over all time steps."""
-    n_axes, state, kept = rows.n_axes, rows.state, rows.kept
-    position_row, velocity_row, acceleration_row = rows.position, rows.velocity, rows.acceleration
-    predicted_row, innovation_row, gains_row = rows.predicted, rows.innovation, rows.gains
-    plot_row, sigma_row, dt_row = rows.plot, rows.sigma, rows.dt
-
-    def run(
-        b: Any, n_steps: int, lanes: int, first: int, count: int,
-        plots: Any, dts: Any, sigmas: Any, dt_strides: Any, sigma_strides: Any, states: Any,
-        predicted: Any, filtered: Any, velocity: Any, acceleration: Any, innovation: Any,
-        alpha: Any, beta: Any, gamma: Any,
-    ) -> None:  # fmt: skip
-        for r in range(state):
-            copy_in(b, r * block, states, r * lanes + first, 1, count)
-        for k in range(n_steps):
-            start = k * dt_strides[0] + first * dt_strides[1]
-            copy_in(b, dt_row * block, dts, start, dt_strides[1], count)
-            for j in range(n_axes):
-                start = (k * lanes + first) * n_axes + j
-                copy_in(b, (plot_row + j) * block, plots, start, n_axes, count)
-                start = k * sigma_strides[0] + first * sigma_strides[1] + j * sigma_strides[2]
-                copy_in(b, (sigma_row + j) * block, sigmas, start, sigma_strides[1], count)
-            step(b)
-            for j in range(n_axes):
-                start = (k * lanes + first) * n_axes + j
-                copy_out(b, (predicted_row + j) * block, predicted, start, n_axes, count)
-                copy_out(b, (position_row + j) * block, filtered, start, n_axes, count)
-                copy_out(b, (velocity_row + j) * block, velocity, start, n_axes, count)
-                copy_out(b, (acceleration_row + j) * block, acceleration, start, n_axes, count)
-                copy_out(b, (innovation_row + j) * block, innovation, start, n_axes, count)
-            start = k * lanes + first
-            copy_out(b, gains_row * block, alpha, start, 1, count)
-            copy_out(b, (gains_row + 1) * block, beta, start, 1, count)
-            copy_out(b, (gains_row + 2) * block, gamma, start, 1, count)
-        for r in range(kept):
-            copy_out(b, r * block, states, r * lanes + first, 1, count)
-
-    return run
+def _in_parts(part: Callable[[tuple[int, int]], int], count: int, threads: int) -> int:
+    """Sum of what `part` returns over all lanes, cut at the ends of blocks."""
+    blocks = -(-count // BLOCK)
+    threads = min(threads, blocks)
+    if threads < 2:
+        return part((0, count))
+    size = BLOCK * -(-blocks // min(blocks, PARTS * threads))
+    ends = [(first, min(first + size, count)) for first in range(0, count, size)]
+    with ThreadPoolExecutor(threads) as pool:
+        return sum(pool.map(part, ends))
 
 
 def _strides(shape: tuple[int, ...], full: tuple[int, ...]) -> tuple[int, ...]:

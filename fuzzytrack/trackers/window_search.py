@@ -89,66 +89,66 @@ class WindowSearch(LaneTracker):
         """The α-β recursion with the search; see `LaneTracker.recursion`."""
         rows = Rows(n_axes, 5 * self.window + 2)
         memory = (*(0.0,) * (5 * self.window + 1), self.alpha)
-        return Recursion(rows, memory, lambda block: _step(self, rows, block))
+        return Recursion(rows, memory, lambda stride: _step(self, rows, stride))
 
 
-def _step(tracker: WindowSearch, rows: Rows, block: int) -> Callable[[Any], None]:
-    """Function that does one time step of a block of single axes, in place in its buffer.
+def _step(tracker: WindowSearch, rows: Rows, stride: int) -> Callable[[Any, int], None]:
+    """Function that does one time step of the first lanes, single axes, of a buffer, in place.
 
     The memory holds the window, then its number of plots, then α.
     """
     window = tracker.window
     count_row, alpha_row = rows.memory + 5 * window, rows.memory + 5 * window + 1
-    remember, search = _remember(rows.memory, window, block), _search(tracker, rows.memory, block)
+    remember, search = _remember(rows.memory, window, stride), _search(tracker, rows.memory, stride)
     full = float(window)
     nan = math.nan
     x_row, v_row, last_row, gap_row = rows.position, rows.velocity, rows.last_plot, rows.gap
     plots_row, prediction_row, innovation_row = rows.plots, rows.predicted, rows.innovation
     gains_row, plot_row, dt_row = rows.gains, rows.plot, rows.dt
 
-    def step(b: Any) -> None:
-        for i in range(block):
-            dt = b[dt_row * block + i]
+    def step(b: Any, count: int) -> None:
+        for i in range(min(count, stride)):
+            dt = b[dt_row * stride + i]
             # The first step of a track has no length; its value is not used.
             dt = dt if dt > 0.0 else 1.0
-            gap = b[gap_row * block + i] + dt
-            plots = b[plots_row * block + i]
-            z = b[plot_row * block + i]
+            gap = b[gap_row * stride + i] + dt
+            plots = b[plots_row * stride + i]
+            z = b[plot_row * stride + i]
             seen = z == z
             running = plots >= 2.0
             update = seen & running
-            last, v = b[last_row * block + i], b[v_row * block + i]
-            prediction = b[x_row * block + i] + v * dt
+            last, v = b[last_row * stride + i], b[v_row * stride + i]
+            prediction = b[x_row * stride + i] + v * dt
             e = z - prediction if update else 0.0
-            alpha = b[alpha_row * block + i]
+            alpha = b[alpha_row * stride + i]
             beta = alpha * alpha / (2.0 - alpha)
 
             if update:
                 remember(b, i, z, gap, dt, prediction, v)
-                count = b[count_row * block + i] + 1.0
-                count = count if count < full else full
-                b[count_row * block + i] = count
-                if count == full:
-                    b[alpha_row * block + i] = search(b, i, alpha)
+                held = b[count_row * stride + i] + 1.0
+                held = held if held < full else full
+                b[count_row * stride + i] = held
+                if held == full:
+                    b[alpha_row * stride + i] = search(b, i, alpha)
 
             v = (z - last) / gap if seen & (plots == 1.0) else v
             x = prediction + alpha * e if running else z
-            b[x_row * block + i] = x if seen else prediction
-            b[v_row * block + i] = v + (beta / dt) * e
-            b[last_row * block + i] = z if seen else last
+            b[x_row * stride + i] = x if seen else prediction
+            b[v_row * stride + i] = v + (beta * (1.0 / dt)) * e
+            b[last_row * stride + i] = z if seen else last
             counted = plots + 1.0 if plots < 2.0 else 2.0
-            b[plots_row * block + i] = counted if seen else plots
-            b[gap_row * block + i] = 0.0 if seen else gap
-            b[prediction_row * block + i] = prediction if running else nan
-            b[innovation_row * block + i] = e if update else nan
-            b[gains_row * block + i] = alpha if update else nan
-            b[(gains_row + 1) * block + i] = beta if update else nan
-            b[(gains_row + 2) * block + i] = 0.0 if update else nan
+            b[plots_row * stride + i] = counted if seen else plots
+            b[gap_row * stride + i] = 0.0 if seen else gap
+            b[prediction_row * stride + i] = prediction if running else nan
+            b[innovation_row * stride + i] = e if update else nan
+            b[gains_row * stride + i] = alpha if update else nan
+            b[(gains_row + 1) * stride + i] = beta if update else nan
+            b[(gains_row + 2) * stride + i] = 0.0 if update else nan
 
     return step
 
 
-def _remember(first_row: int, window: int, block: int) -> Callable[..., None]:
+def _remember(first_row: int, window: int, stride: int) -> Callable[..., None]:
     """Function that puts a plot at the end of the window, and the first one out.
 
     The window is five runs of rows, oldest first: plots, times since the plot before, time steps,
@@ -159,17 +159,17 @@ def _remember(first_row: int, window: int, block: int) -> Callable[..., None]:
         b: Any, i: int, z: float, gap: float, dt: float, prediction: float, velocity: float
     ) -> None:
         for r in range(first_row, first_row + 5 * window - 1):
-            b[r * block + i] = b[(r + 1) * block + i]
-        b[(first_row + window - 1) * block + i] = z
-        b[(first_row + 2 * window - 1) * block + i] = gap
-        b[(first_row + 3 * window - 1) * block + i] = dt
-        b[(first_row + 4 * window - 1) * block + i] = prediction
-        b[(first_row + 5 * window - 1) * block + i] = velocity
+            b[r * stride + i] = b[(r + 1) * stride + i]
+        b[(first_row + window - 1) * stride + i] = z
+        b[(first_row + 2 * window - 1) * stride + i] = gap
+        b[(first_row + 3 * window - 1) * stride + i] = dt
+        b[(first_row + 4 * window - 1) * stride + i] = prediction
+        b[(first_row + 5 * window - 1) * stride + i] = velocity
 
     return remember
 
 
-def _search(tracker: WindowSearch, plots_row: int, block: int) -> Callable[..., float]:
+def _search(tracker: WindowSearch, plots_row: int, stride: int) -> Callable[..., float]:
     """Function that finds the α with the least squared innovations over the window."""
     window, alphas = tracker.window, tracker.grid
     betas = tuple(np.asarray(design.benedict_bordner(alphas)).tolist())
@@ -181,14 +181,14 @@ def _search(tracker: WindowSearch, plots_row: int, block: int) -> Callable[..., 
         best, least = current, infinity
         for g in range(candidates):
             alpha, beta, total = alphas[g], betas[g], 0.0
-            x, v = 0.0, b[velocities_row * block + i]
+            x, v = 0.0, b[velocities_row * stride + i]
             for k in range(window):
-                known = b[predictions_row * block + i]
-                prediction = x + v * b[(gaps_row + k) * block + i] if k > 0 else known
-                e = b[(plots_row + k) * block + i] - prediction
+                known = b[predictions_row * stride + i]
+                prediction = x + v * b[(gaps_row + k) * stride + i] if k > 0 else known
+                e = b[(plots_row + k) * stride + i] - prediction
                 total = total + e * e
                 x = prediction + alpha * e
-                v = v + (beta / b[(steps_row + k) * block + i]) * e
+                v = v + (beta / b[(steps_row + k) * stride + i]) * e
             best = alpha if total < least else best
             least = total if total < least else least
         return best

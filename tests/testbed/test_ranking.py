@@ -22,7 +22,7 @@ def test_stretched_limits_move_sets_and_outputs_alike():
     part = (before["damping"] - 0.54) / (0.89 - 0.54)
     np.testing.assert_allclose(after["damping"], 0.4 + part * 0.7, rtol=1e-12)
     np.testing.assert_array_equal(after["stiffness"], before["stiffness"])
-    with pytest.raises(ft.RuleBaseError, match="limits of damping must rise, got 1.1 to"):
+    with pytest.raises(ft.RuleBaseError, match="limits of damping must rise"):
         stretched(rules, {"damping": (1.1, 0.4)})
 
 

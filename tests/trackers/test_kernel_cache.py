@@ -116,6 +116,21 @@ def test_another_process_takes_what_one_has_compiled(tmp_path):
     assert repaired[file] != files[file]
 
 
+def test_names_of_compiled_functions_follow_their_content():
+    def name(function):
+        dispatcher = compiled(function)
+        dispatcher(1.0)
+        return next(iter(dispatcher.overloads.values())).fndesc.mangled_name
+
+    first, again, other = (name(make(offset)).encode() for offset in (1.0, 1.0, 2.0))
+    digests = [fingerprint(make(offset))[:24].encode() for offset in (1.0, 1.0, 2.0)]
+    for text, digest in zip((first, again, other), digests, strict=True):
+        assert digest in text
+    assert digests[0] == digests[1] != digests[2]
+    # What cannot be told has a name of its own.
+    assert name(make(1.0, (np.float64(2.0),))) != name(make(1.0, (np.float64(2.0),)))
+
+
 @pytest.fixture
 def kept(tmp_path, monkeypatch):
     """Function that compiles, with its files in a folder of its own."""
@@ -152,3 +167,34 @@ def test_numba_asks_the_cache_for_no_more():
     cache = KernelCache(helper, "0")
     cache.enable(), cache.disable(), cache.flush()
     assert os.path.isdir(os.path.dirname(cache.cache_path))
+
+
+SEVERAL = """
+import sys
+import numpy as np
+import fuzzytrack as ft
+from fuzzytrack.schedulers import KalmanCV
+from fuzzytrack.trackers.lanes import runner
+
+z = np.random.default_rng(3).normal(size=(9, 4, 1)).cumsum(axis=0)
+dts, sigmas = np.ones((9, 1)), np.full((1, 1, 1), 2.0)
+schedulers = {
+    "slow": ft.FixedGains(0.2, 0.02), "fast": ft.FixedGains(0.8, 0.6), "kalman": KalmanCV(0.5)
+}
+for name in sys.argv[1:]:
+    core = runner(ft.AlphaBetaTracker(schedulers[name]), 1)
+    plain, native = (core(core.fresh(4), z, dts, sigmas, native=way)[1] for way in (False, True))
+    for output in plain:
+        assert np.array_equal(plain[output], native[output], equal_nan=True), (name, output)
+"""
+
+
+def test_code_from_disk_and_new_code_are_not_mixed_up(tmp_path):
+    """Each process compiles in another order, so that Numba's own counters differ."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    for order in (["slow"], ["fast", "slow"], ["kalman", "slow", "fast"], ["fast", "kalman"]):
+        done = subprocess.run(
+            [sys.executable, "-c", SEVERAL, *order], env=environment, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+    assert len(list(tmp_path.rglob("kernel-*.nbc"))) == 3

@@ -1,0 +1,211 @@
+"""The fast ways through the code give the numbers of the slow ones, and are the fast ones."""
+
+import pickle
+import platform
+import threading
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.fuzzy.ramps import find_ramps
+from fuzzytrack.trackers import runner as module
+from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.native import compiled
+from fuzzytrack.trackers.passage import BLOCK, aligned
+from fuzzytrack.trackers.result import KEPT
+
+FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
+FUZZY = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
+COUPLED = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("chan-style")))
+TRACKERS = {"fixed": FIXED, "fuzzy": FUZZY, "coupled": COUPLED}
+
+
+def recording(tracks=BLOCK + 7, steps=12, seed=3):
+    """Irregular times, and plots of more tracks than go into a block; some are missed."""
+    random = np.random.default_rng(seed)
+    plots = np.cumsum(random.normal(0, 30, (steps, tracks, 2)), axis=0)
+    plots[random.random(plots.shape) < 0.1] = np.nan
+    # One starts late, and one never does.
+    plots[:6, 3], plots[:, 4] = np.nan, np.nan
+    return np.cumsum(random.uniform(0.5, 2.0, steps)), plots
+
+
+@pytest.fixture
+def compile_always(monkeypatch):
+    monkeypatch.setattr(module, "COMPILE_ABOVE", 0)
+
+
+def arrays(result):
+    gains = result.gains
+    names = [name for name in KEPT if name != "gains"]
+    return [getattr(result, n) for n in names] + [gains.alpha, gains.beta, gains.gamma]
+
+
+def expect_same(one, other):
+    for ours, theirs in zip(one, other, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+def run_plain(tracker, times, plots):
+    """All outputs of the plain run, a part of the tracks at a time so that nothing compiles."""
+    core = runner(tracker, 2 if tracker.coupled else 1)
+    shape = (len(plots), -1, core.rows.n_axes)
+    dts = np.diff(times, prepend=times[0])[:, None]
+    lanes = plots.reshape(shape)
+    nowhere = np.full((1, 1, 1), np.nan)
+    return core(core.fresh(lanes.shape[1]), lanes, dts, nowhere, native=False)
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.usefixtures("compile_always")
+def test_batches_equal_plain_python(name):
+    times, plots = recording()
+    after, plain = run_plain(TRACKERS[name], times, plots)
+    result = TRACKERS[name].run(times, plots)
+    for key in ("predicted", "filtered", "velocity", "acceleration", "innovation"):
+        np.testing.assert_array_equal(getattr(result, key), plain[key].reshape(plots.shape))
+    np.testing.assert_array_equal(result.state.lanes, after)
+    own = np.repeat(times[:, None], plots.shape[1], axis=1)
+    expect_same(arrays(TRACKERS[name].run(own, plots)), arrays(result))
+
+
+@pytest.mark.parametrize("keep", [("predicted",), ("velocity", "gains"), ()])
+@pytest.mark.usefixtures("compile_always")
+def test_what_is_kept_is_the_same(keep):
+    times, plots = recording()
+    whole, part = FIXED.run(times, plots), FIXED.run(times, plots, keep=keep)
+    assert part.kept == keep
+    for name in set(keep) - {"gains"}:
+        np.testing.assert_array_equal(getattr(part, name), getattr(whole, name))
+    if "gains" in keep:
+        np.testing.assert_array_equal(part.gains.beta, whole.gains.beta)
+    np.testing.assert_array_equal(part.state.lanes, whole.state.lanes)
+
+
+def test_what_was_not_kept_says_so():
+    result = FIXED.run(range(4), np.zeros((4, 2)), keep=["filtered", "innovation"])
+    assert result.kept == ("filtered", "innovation")
+    with pytest.raises(AttributeError, match=r"predicted was not kept; run with keep=\(\.\.\., 'p"):
+        _ = result.predicted
+    with pytest.raises(AttributeError, match="no attribute 'colour'"):
+        _ = result.colour
+    assert pickle.loads(pickle.dumps(result)).kept == result.kept
+    assert repr(result) == "TrackResult(shape=(4, 2), kept=('filtered', 'innovation'))"
+    assert FIXED.run(range(4), np.zeros(4)).kept == KEPT
+    assert FIXED.run(range(4), np.zeros(4), keep="gains").kept == ("gains",)
+
+
+def test_bad_choices_are_refused():
+    with pytest.raises(ValueError, match="keep: unknown 'speed'; out of predicted, filtered"):
+        FIXED.run(range(4), np.zeros(4), keep=("predicted", "speed"))
+    with pytest.raises(ValueError, match="threads must be at least 1, got 0"):
+        FIXED.run(range(4), np.zeros(4), threads=0)
+
+
+@pytest.mark.parametrize("tracker", [FIXED, COUPLED])
+@pytest.mark.usefixtures("compile_always")
+def test_threads_change_nothing(tracker):
+    times, plots = recording(tracks=5 * BLOCK + 3)
+    names = set()
+
+    def noted(part):
+        def call(ends):
+            names.add(threading.current_thread().name)
+            return part(ends)
+
+        return call
+
+    original = module._in_parts
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "_in_parts", lambda part, *rest: original(noted(part), *rest))
+        many = tracker.run(times, plots, threads=3)
+    assert names - {threading.main_thread().name} == names
+    expect_same(arrays(many), arrays(tracker.run(times, plots, threads=1)))
+
+
+@pytest.mark.usefixtures("compile_always")
+def test_infinite_plots_are_found_in_compiled_batches():
+    times, plots = recording()
+    plots[7, 250, 1] = -np.inf
+    with pytest.raises(ft.DataError, match=r"infinite plot at index \(7, 250, 1\)"):
+        FIXED.run(times, plots, threads=2)
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+def test_compiled_streams_equal_plain_ones(name):
+    tracker = TRACKERS[name]
+    times, plots = recording()
+    for z in (plots[:, 0], plots):
+        _, plain = run_plain(tracker, times, z)
+        tracker.compile(2)
+        state = tracker.start(z[0], times[0])
+        for k in range(1, len(times)):
+            # As they may come: a list for an array now and then, a sigma that nobody asked for.
+            row = z[k].tolist() if k % 3 == 0 else z[k]
+            state = tracker.step(state, row, float(times[k]), 5.0 if k % 4 == 0 else None)
+            np.testing.assert_array_equal(
+                state.predicted, plain["predicted"][k].reshape(z[k].shape)
+            )
+            np.testing.assert_array_equal(state.velocity, plain["velocity"][k].reshape(z[k].shape))
+            np.testing.assert_array_equal(
+                state.innovation, plain["innovation"][k].reshape(z[k].shape)
+            )
+        assert (state.time.shape, state.time) == ((), times[-1])
+
+
+def test_compiled_streams_check_what_they_are_given():
+    FIXED.compile(2)
+    state = FIXED.step(FIXED.start([0.0, 0.0], 0.0), [1.0, 1.0], 1.0)
+    cases = {
+        "infinite plot at index": ([np.inf, 0.0], 2.0, None),
+        "must increase": ([0.0, 0.0], 1.0, None),
+        "not finite": ([0.0, 0.0], np.nan, None),
+        "do not go on from": ([0.0, 0.0, 0.0], 2.0, None),
+        "must be positive and finite": ([0.0, 0.0], 2.0, -1.0),
+    }
+    for message, (z, t, sigma) in cases.items():
+        with pytest.raises(ValueError, match=message):
+            FIXED.step(state, z, t, sigma)
+    with pytest.raises(ValueError, match="remembers other things"):
+        FUZZY.step(state, [0.0, 0.0], 2.0)
+    expected = FIXED.step(state, [3.0, 4.0], 2.0)
+    spread_out = np.array([[3.0, 4.0], [0.0, 0.0]]).T[:, 0]
+    for z, t in (([3, 4], 2), (np.array([3, 4]), np.float64(2.0)), (spread_out, np.array(2.0))):
+        np.testing.assert_array_equal(FIXED.step(state, z, t).lanes, expected.lanes)
+
+
+def test_a_compiled_tracker_pickles_and_stays_equal():
+    FIXED.compile(2)
+    state = FIXED.step(FIXED.start([0.0, 0.0], 0.0), [1.0, 1.0], 1.0)
+    copy = pickle.loads(pickle.dumps(FIXED))
+    assert (copy, hash(copy)) == (FIXED, hash(FIXED))
+    again = pickle.loads(pickle.dumps(state))
+    here, there = FIXED.step(state, [2.0, 2.0], 2.0), copy.step(again, [2.0, 2.0], 2.0)
+    np.testing.assert_array_equal(here.lanes, there.lanes)
+
+
+def test_scratch_begins_with_a_line_of_the_cache():
+    for count in (1, 100, 12345):
+        numbers = aligned(count)
+        assert (len(numbers), numbers.ctypes.data % 64) == (count, 0)
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads x86 assembly")
+@pytest.mark.parametrize("name", ["fixed", "fuzzy"])
+def test_several_lanes_are_worked_on_at_once(name):
+    recursion = TRACKERS[name].recursion(1)
+    steady = compiled(recursion.steady(BLOCK, False))
+    steady(aligned(recursion.rows.total * BLOCK), BLOCK, 1.0)
+    (assembly,) = steady.inspect_asm().values()
+    assert "mulpd" in assembly
+    # The time step is common, so only what the rules divide by is left.
+    assert ("divpd" in assembly) == (name == "fuzzy")
+
+
+def test_rules_that_share_out_every_point_are_ramps():
+    assert find_ramps(ft.load_rulebase("stiffness-damping")) is not None
+    assert find_ramps(ft.load_rulebase("chan-style")) is not None
+    # Output sets of different areas: rules differ in weight.
+    assert find_ramps(ft.load_rulebase("stiffness-damping-cog")) is None
+    assert find_ramps(ft.load_rulebase("tipper")) is None
