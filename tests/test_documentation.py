@@ -10,7 +10,11 @@ import fuzzytrack as ft
 from fuzzytrack.schedulers import normalizations, schedulers
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [
+    ROOT / "README.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs" / "papers").glob("*.md")),
+]
 
 
 def blocks(page, language):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,13 +12,16 @@ import typer
 from numpy.typing import NDArray
 
 from fuzzytrack.cli import options
+from fuzzytrack.cli.large_jobs import LargeJob, is_large
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.tables import table_writer
 from fuzzytrack.io.tracks import Recording, read_tracks, write_tracks
 from fuzzytrack.testbed.ragged import run_tracks
+from fuzzytrack.testbed.totals import Totals
 from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.trackers.lanes import LaneTracker
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
@@ -30,10 +34,14 @@ Array = NDArray[np.float64]
 
 # With more tracks than this, only totals are printed.
 _LISTED = 20
+_HEADS = ("plots", "missed", "duration (s)", "innovation RMS", "mean α", "mean β")
 
 
 def track(
-    file: options.Plots,
+    file: Annotated[
+        str,
+        typer.Argument(metavar="FILE|DIR", help="CSV or Parquet file, or a folder of Parquet."),
+    ],
     tracker: Annotated[
         str,
         typer.Option("--tracker", metavar="NAME|FILE.yaml", help="See `fuzzytrack trackers`."),
@@ -48,20 +56,52 @@ def track(
     sort: options.Sort = False,
     output: Annotated[
         str | None,
-        typer.Option("--output", "-o", metavar="OUT.csv", help="Write the tracks (or .parquet)."),
+        typer.Option(
+            "--output", "-o", metavar="OUT.csv|DIR", help="Write the tracks (or .parquet)."
+        ),
     ] = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE.png", help="Draw the tracks (or .pdf, .svg…).")
     ] = None,
+    chunk_rows: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="Hold N rows at a time. [default: all if few]"),
+    ] = None,
+    jobs: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Processes of this computer; -o is a folder.")
+    ] = 1,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Dask cluster; -o is a folder.")
+    ] = None,
+    partitions: Annotated[
+        int, typer.Option(min=1, metavar="P", help="Tasks and files that tracks are divided among.")
+    ] = 16,
     json: options.Json = False,
 ) -> None:
-    """Track the plots of a file.
+    """Track the plots of a file, or of a folder of files in order of their names.
 
-    Times are in seconds; an empty cell or nan is a missed plot.
+    Times are in seconds; an empty cell or nan is a missed plot. A folder, or a file of more than
+    100 MB, is tracked in pieces: files larger than memory will do.
     """
     if sigma is not None and not 0 < sigma < math.inf:
         raise ValueError(f"--sigma must be > 0, got {sigma:g}")
     chosen = make_tracker(tracker)
+    apart = scheduler is not None or jobs > 1
+    if (
+        apart
+        or chunk_rows is not None
+        or os.path.isdir(file)
+        or (is_large(file) and isinstance(chosen, LaneTracker) and not (sort or plot))
+    ):
+        _check_pieces(sort, plot)
+        coordinates = None if axes is None else options.names(axes, "--axes")
+        job = LargeJob.of(file, chosen, sigma, chunk_rows, time=time, id=id, axes=coordinates)
+        if apart:
+            totals = job.track_apart(output, jobs, scheduler, partitions)
+        else:
+            totals = job.track(output)
+        _report(file, job, totals, tracker, output, json)
+        return
     _look_ahead(file, output, plot)
     recording = read(file, time, id, axes, sort)
     with progress("tracking") as watch:
@@ -94,6 +134,41 @@ def _look_ahead(file: str, output: str | None, plot: str | None) -> None:
         check_output(output, (file,))
     if plot is not None:
         check_picture(plot, (file,))
+
+
+def _check_pieces(sort: bool, plot: str | None) -> None:
+    for option, given in (("--sort", sort), ("--plot", plot)):
+        if given:
+            raise ValueError(
+                f"{option}: needs the whole recording in memory; not for a folder, and not with "
+                "--chunk-rows, --jobs or --scheduler"
+            )
+
+
+def _report(
+    file: str, job: LargeJob, totals: Totals, tracker: str, output: str | None, json: bool
+) -> None:
+    """Print totals; single tracks are not kept."""
+    columns = job.columns
+    if json:
+        print_json(
+            {
+                "file": file,
+                "tracker": tracker,
+                "time": columns.time,
+                "axes": columns.axes,
+                "tracks": None,
+                "number": totals.tracks,
+                "total": totals.summary,
+                "output": output,
+                "plot": None,
+            }
+        )
+        return
+    whose = f"all {totals.tracks}" if columns.id else "track"
+    print_table([columns.id, *_HEADS], [[whose, *_row(totals.summary)]])
+    if output is not None:
+        say(f"wrote {output}")
 
 
 # -------------------------------------------------------------------- summary
@@ -147,8 +222,7 @@ def _print_table(recording: Recording, results: Sequence[TrackResult]) -> None:
     if many:
         rows += [[]] if rows else []
         rows.append([f"all {len(results)}", *_row(_summary(results))])
-    heads = ["plots", "missed", "duration (s)", "innovation RMS", "mean α", "mean β"]
-    print_table([recording.id, *heads], rows)
+    print_table([recording.id, *_HEADS], rows)
 
 
 def _row(summary: dict[str, Any]) -> list[str]:

@@ -28,13 +28,13 @@ Progress = Callable[[float], None]
 
 # What stands for a missing number, in lower case.
 GAPS = ("", "nan", "na")
-_EXPECTED = {
+EXPECTED = {
     "number": "a finite number",
     "gaps": "a finite number, or an empty cell or nan for a missed plot",
 }
 # Rows at a time; many more at once keep the garbage collector busy.
-_CHUNK = 5_000
-_PARQUET = (".parquet", ".pq")
+CHUNK = 5_000
+PARQUET = (".parquet", ".pq")
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,7 @@ def read_table(
         If it cannot be read.
     """
     file = os.fspath(path)
-    read = _read_parquet if file.lower().endswith(_PARQUET) else _read_csv
+    read = _read_parquet if file.lower().endswith(PARQUET) else _read_csv
     table = read(file, wanted, progress or _silent)
     if not len(table.rows):
         raise DataError(f"{file}: holds no rows, only column names")
@@ -146,9 +146,9 @@ def write_table(
 def table_writer(path: PathLike) -> Callable[[Path, Mapping[str, Any], Progress], None]:
     """Find the function that writes a file of this name; DataError if there is none."""
     suffix = Path(path).suffix.lower()
-    if suffix in _PARQUET:
-        _pyarrow(os.fspath(path))
-        return _write_parquet
+    if suffix in PARQUET:
+        import_pyarrow(os.fspath(path))
+        return write_parquet
     if suffix in (".csv", ".txt"):
         return _write_csv
     raise DataError(f"{path}: cannot write {suffix or 'without suffix'}; .csv or .parquet")
@@ -161,7 +161,7 @@ def _silent(share: float) -> None:
 # -------------------------------------------------------------------- columns
 
 
-class _Column:
+class Column:
     """A wanted column that grows chunk by chunk."""
 
     def __init__(self, file: str, name: str, kind: Kind) -> None:
@@ -204,7 +204,7 @@ class _Column:
             else:
                 if math.isfinite(value):
                     return value
-        raise self.error(row, cell, _EXPECTED[self.kind])
+        raise self.error(row, cell, EXPECTED[self.kind])
 
     def error(self, row: int, cell: str, expected: str) -> DataError:
         shown = repr(cell if len(cell) <= 40 else cell[:40] + "…") if cell else "an empty cell"
@@ -213,7 +213,7 @@ class _Column:
         )
 
 
-def _table(file: str, columns: Sequence[_Column], rows: NDArray[np.int64]) -> Table:
+def make_table(file: str, columns: Sequence[Column], rows: NDArray[np.int64]) -> Table:
     numbers, words = {}, {}
     for column in columns:
         values = np.concatenate(column.parts) if column.parts else np.empty(0)
@@ -224,7 +224,7 @@ def _table(file: str, columns: Sequence[_Column], rows: NDArray[np.int64]) -> Ta
     return Table(file, rows, numbers, words)
 
 
-def _checked(names: Sequence[str], file: str) -> tuple[str, ...]:
+def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:
     if all(map(_numeric, names)):
         raise DataError(f"{file}: row 1: holds numbers; expected the names of the columns")
     doubled = sorted({name for name in names if name and names.count(name) > 1})
@@ -252,7 +252,7 @@ def _read_csv(
         try:
             return _parse_csv(file, stream, reader, wanted, progress)
         except UnicodeDecodeError:
-            raise _not_utf8(file) from None
+            raise not_utf8(file) from None
         except csv.Error as error:
             raise DataError(f"{file}: row {reader.line_num}: not CSV: {error}") from None
 
@@ -267,26 +267,26 @@ def _parse_csv(
     header = next((row for row in reader if row), None)
     if header is None:
         raise DataError(f"{file}: is empty; expected a row of column names, then data")
-    names = _checked([name.strip() for name in header], file)
-    columns = [_Column(file, name, kind) for name, kind in wanted(names).items()]
+    names = checked_names([name.strip() for name in header], file)
+    columns = [Column(file, name, kind) for name, kind in wanted(names).items()]
     places = [names.index(column.name) for column in columns]
     size = os.fstat(stream.fileno()).st_size
     numbers: list[NDArray[np.int64]] = []
-    for rows, cells in _chunks(file, reader, len(names)):
+    for rows, cells in chunks(file, reader, len(names)):
         for column, place in zip(columns, places, strict=True):
             column.take(cells[place], rows)
         numbers.append(np.array(rows))
         if size:
             progress(min(stream.buffer.tell() / size, 1.0))  # type: ignore[attr-defined]
-    return _table(file, columns, np.concatenate(numbers) if numbers else np.empty(0, dtype=int))
+    return make_table(file, columns, np.concatenate(numbers) if numbers else np.empty(0, dtype=int))
 
 
-def _chunks(
+def chunks(
     file: str, reader: Any, width: int
 ) -> Iterator[tuple[Sequence[int], list[tuple[str, ...]]]]:
     """Row numbers and columns of some rows at a time; blank lines are left out."""
     before = reader.line_num
-    while cells := list(islice(reader, _CHUNK)):
+    while cells := list(islice(reader, CHUNK)):
         rows: Sequence[int] = range(before + 1, reader.line_num + 1)
         if len(rows) != len(cells):  # cells with line breaks
             lines = (1 + sum(cell.count("\n") for cell in row) for row in cells)
@@ -311,7 +311,7 @@ def _many(count: int, word: str) -> str:
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
-def _not_utf8(file: str) -> DataError:
+def not_utf8(file: str) -> DataError:
     with open(file, "rb") as stream:
         for number, line in enumerate(stream, 1):
             try:
@@ -329,13 +329,13 @@ def _write_csv(draft: Path, columns: Mapping[str, Any], progress: Progress) -> N
     with open(draft, "x", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(columns)
-        for start in range(0, length, _CHUNK):
-            part = [_cells(column[start : start + _CHUNK]) for column in columns.values()]
+        for start in range(0, length, CHUNK):
+            part = [cells(column[start : start + CHUNK]) for column in columns.values()]
             writer.writerows(zip(*part, strict=True))
-            progress(min((start + _CHUNK) / length, 1.0))
+            progress(min((start + CHUNK) / length, 1.0))
 
 
-def _cells(values: Sequence[str] | Array) -> Sequence[Any]:
+def cells(values: Sequence[str] | Array) -> Sequence[Any]:
     if not isinstance(values, np.ndarray):
         return values
     cells: list[Any] = values.tolist()
@@ -347,7 +347,7 @@ def _cells(values: Sequence[str] | Array) -> Sequence[Any]:
 # -------------------------------------------------------------------- Parquet
 
 
-def _pyarrow(file: str) -> Any:
+def import_pyarrow(file: str) -> Any:
     try:
         import pyarrow
         import pyarrow.parquet
@@ -362,27 +362,27 @@ def _pyarrow(file: str) -> Any:
 def _read_parquet(
     file: str, wanted: Callable[[tuple[str, ...]], Mapping[str, Kind]], progress: Progress
 ) -> Table:
-    arrow = _pyarrow(file)
+    arrow = import_pyarrow(file)
     with open(file, "rb") as stream:
         try:
             source = arrow.parquet.ParquetFile(stream)
-            names = _checked(source.schema_arrow.names, file)
-            columns = [_Column(file, name, kind) for name, kind in wanted(names).items()]
+            names = checked_names(source.schema_arrow.names, file)
+            columns = [Column(file, name, kind) for name, kind in wanted(names).items()]
             data = source.read([column.name for column in columns])
         except arrow.ArrowException as error:
             raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
     rows = np.arange(1, data.num_rows + 1)
     for column in columns:
         values = data.column(column.name)
-        if column.kind == "word" or not _is_number(arrow, values.type):
+        if column.kind == "word" or not is_number(arrow, values.type):
             column.take([_text(value) for value in values.to_pylist()], rows.tolist())
         else:
             column.parts.append(_finite(column, values.to_numpy().astype(np.float64)))
     progress(1.0)
-    return _table(file, columns, rows)
+    return make_table(file, columns, rows)
 
 
-def _is_number(arrow: Any, kind: Any) -> bool:
+def is_number(arrow: Any, kind: Any) -> bool:
     is_decimal = arrow.types.is_decimal(kind)
     return bool(arrow.types.is_integer(kind) or arrow.types.is_floating(kind) or is_decimal)
 
@@ -391,16 +391,16 @@ def _text(value: object) -> str:
     return "" if value is None else str(value)
 
 
-def _finite(column: _Column, values: Array) -> Array:
+def _finite(column: Column, values: Array) -> Array:
     bad = np.isinf(values) if column.kind == "gaps" else ~np.isfinite(values)
     if bad.any():
         row = int(np.argmax(bad))
-        raise column.error(row + 1, str(values[row]), _EXPECTED[column.kind])
+        raise column.error(row + 1, str(values[row]), EXPECTED[column.kind])
     return values
 
 
-def _write_parquet(draft: Path, columns: Mapping[str, Any], progress: Progress) -> None:
-    arrow = _pyarrow(str(draft))
+def write_parquet(draft: Path, columns: Mapping[str, Any], progress: Progress) -> None:
+    arrow = import_pyarrow(str(draft))
     table = arrow.table(
         {
             name: arrow.array(values, from_pandas=True)

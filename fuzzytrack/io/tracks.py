@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.tables import Kind, Progress, Table, Words, read_table, write_table
 from fuzzytrack.trackers.result import TrackResult
-from fuzzytrack.yamltree import suggestion
 
 __all__ = ["Recording", "Track", "read_tracks", "write_tracks"]
 
 Array = NDArray[np.float64]
-
-#: Names of columns that are found without being named.
-TIMES = ("t", "t_s", "time", "time_s")
-AXES = (("x", "y", "z"), ("x_m", "y_m", "z_m"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,26 +100,16 @@ def read_tracks(
     OSError
         If it cannot be read.
     """
-    chosen: dict[str, tuple[str, ...]] = {}
+    chosen: list[Columns] = []
 
     def wanted(names: tuple[str, ...]) -> dict[str, Kind]:
-        _check_header(names, str(path))
-        chosen["time"] = (_time_column(names, time, str(path)),)
-        chosen["axes"] = _axes_columns(names, axes, str(path))
-        if id is not None:
-            chosen["id"] = (_known(names, id, "--id", str(path)),)
-        every = [name for group in chosen.values() for name in group]
-        doubled = [name for name in every if every.count(name) > 1]
-        if doubled:
-            raise DataError(f"{path}: column {doubled[0]!r} cannot serve twice")
-        gaps: dict[str, Kind] = dict.fromkeys(chosen["axes"], "gaps")
-        words: dict[str, Kind] = dict.fromkeys(chosen.get("id", ()), "word")
-        return {chosen["time"][0]: "number", **words, **gaps}
+        chosen.append(choose_columns(names, str(path), time, id, axes))
+        return chosen[0].kinds
 
     table = read_table(path, wanted, progress)
-    name = "" if id is None else id
-    tracks = _tracks(table, chosen["time"][0], name, chosen["axes"], sort)
-    return Recording(table.file, chosen["time"][0], name, chosen["axes"], tracks)
+    (columns,) = chosen
+    tracks = _tracks(table, columns.time, columns.id, columns.axes, sort)
+    return Recording(table.file, columns.time, columns.id, columns.axes, tracks)
 
 
 def write_tracks(
@@ -192,52 +178,6 @@ def _columns(
 
 
 # -------------------------------------------------------------------- which columns
-
-
-def _check_header(names: tuple[str, ...], file: str) -> None:
-    """Say so where the first row cannot be one of names."""
-    if len(names) == 1:
-        for mark, word in ((";", "semicolons"), ("\t", "tabs")):
-            if mark in names[0]:
-                raise DataError(f"{file}: row 1: separated by {word}; expected commas")
-
-
-def _known(names: tuple[str, ...], name: str, option: str, file: str) -> str:
-    if name not in names:
-        raise DataError(f"{file}: {option}: no column {name!r}{suggestion(name, names)}")
-    return name
-
-
-def _time_column(names: tuple[str, ...], time: str | None, file: str) -> str:
-    if time is not None:
-        return _known(names, time, "--time", file)
-    for name in TIMES:
-        if name in names:
-            return name
-    raise DataError(
-        f"{file}: no column {_either(TIMES)}; name the column of time with --time; "
-        f"there are {', '.join(names)}"
-    )
-
-
-def _axes_columns(names: tuple[str, ...], axes: Sequence[str] | None, file: str) -> tuple[str, ...]:
-    if axes is not None:
-        if not axes:
-            raise DataError(f"{file}: --axes: needs at least one column")
-        return tuple(_known(names, name, "--axes", file) for name in axes)
-    for group in AXES:
-        found = tuple(name for name in group if name in names)
-        if found:
-            return found
-    raise DataError(
-        f"{file}: no columns x, y or x_m, y_m; name those of position with --axes; "
-        f"there are {', '.join(names)}"
-    )
-
-
-def _either(words: Collection[str]) -> str:
-    *most, last = words
-    return f"{', '.join(most)} or {last}"
 
 
 # -------------------------------------------------------------------- which rows

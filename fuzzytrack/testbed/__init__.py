@@ -10,6 +10,7 @@ from fuzzytrack.testbed.results import Results
 from fuzzytrack.testbed.scenario import FieldSensors, PlotNoise, Scenario
 from fuzzytrack.testbed.sensor_field import SensorField, canonical_field, sensor_grid
 from fuzzytrack.testbed.starting import prepare_start
+from fuzzytrack.testbed.streaming import run_iter
 from fuzzytrack.testbed.trajectories import (
     constant_acceleration,
     constant_velocity,
@@ -41,6 +42,7 @@ __all__ = [
     "monte_carlo",
     "noisy_plots",
     "prepare_start",
+    "run_iter",
     "run_tracks",
     "s3",
     "sensor_grid",

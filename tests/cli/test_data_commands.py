@@ -137,8 +137,8 @@ def test_bad_options(fails, plots, monkeypatch, words, message):
 
 def test_no_file_and_folder_for_a_file(fails, tmp_path):
     assert fails("track", tmp_path / "a.csv").endswith("a.csv: No such file or directory")
-    assert fails("track", tmp_path).endswith("Is a directory")
-    assert "Missing argument 'FILE'" in fails("track")
+    assert fails("track", tmp_path).endswith("holds no Parquet files (.parquet, .pq)")
+    assert "Missing argument 'FILE|DIR'" in fails("track")
 
 
 def test_bad_name_cannot_reach_the_terminal(fails):

@@ -112,7 +112,7 @@ def test_rows_are_lines_also_after_cells_with_line_breaks(tmp_path):
 
 
 def test_long_files_come_in_pieces(tmp_path, monkeypatch):
-    monkeypatch.setattr(tables, "_CHUNK", 2)
+    monkeypatch.setattr(tables, "CHUNK", 2)
     shares = []
     path = written(tmp_path, "t,x\n0,0\n1,1\n\n\n2,\n3,3\n")
     (track,) = read_tracks(path, progress=shares.append).tracks
@@ -170,7 +170,7 @@ def test_the_input_is_never_overwritten(tmp_path):
 
 def test_failure_leaves_nothing_behind(tmp_path, monkeypatch):
     path = written(tmp_path, "old", "out.csv")
-    monkeypatch.setattr(tables, "_CHUNK", 1)
+    monkeypatch.setattr(tables, "CHUNK", 1)
 
     class Broken(list):
         def __getitem__(self, key):

@@ -1,0 +1,137 @@
+"""Recordings sorted into partitions by the identity of tracks."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.files import PathLike, whole_file
+from fuzzytrack.io.piece_writer import arrow_column, column_writer
+from fuzzytrack.io.pieces import ROWS, Piece
+from fuzzytrack.io.tables import Words, import_pyarrow
+
+__all__ = ["partition_of", "read_partition", "write_partitions"]
+
+# Columns of a file of partitions; those of the recording may have any names.
+_ROW = "row"
+
+
+def partition_of(id: str, partitions: int) -> int:
+    """Partition that a track belongs to, the same on any computer."""
+    return zlib.crc32(id.encode()) % partitions
+
+
+def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, partitions: int) -> None:
+    """Write a Parquet file in which the rows of each partition can be read by themselves.
+
+    Parameters
+    ----------
+    path : str or path
+        The file; it appears whole or not at all.
+    pieces : iterable of Piece
+        Of one file of a recording.
+    n_axes : int
+        Axes of the plots.
+    partitions : int
+        Number of partitions.
+
+    Notes
+    -----
+    Each piece becomes as many row groups as there are partitions, empty ones included: row group
+    k·partitions + p holds the rows of partition p of piece k, in their order.
+    """
+    arrow = import_pyarrow(str(path))
+    columns = _columns(n_axes)
+    numbers = [(name, arrow.float64()) for name in (columns.time, *columns.axes)]
+    schema = arrow.schema([(columns.id, arrow.string()), (_ROW, arrow.int64()), *numbers])
+    with whole_file(path) as draft, column_writer(arrow, draft, schema, columns.id) as writer:
+        for piece in pieces:
+            for table in _parts(arrow, schema, columns, piece, partitions):
+                writer.write_table(table)
+
+
+def _columns(n_axes: int) -> Columns:
+    return Columns("time", "id", tuple(f"axis_{k}" for k in range(n_axes)))
+
+
+def _parts(
+    arrow: Any, schema: Any, columns: Columns, piece: Piece, partitions: int
+) -> Iterator[Any]:
+    """Rows of each partition of a piece."""
+    of_name = np.array([partition_of(name, partitions) for name in piece.ids.names], dtype=np.int64)
+    of_row = of_name[piece.ids.codes]
+    order = np.argsort(of_row, kind="stable")
+    values = {
+        columns.id: Words(piece.ids.names, piece.ids.codes[order]),
+        _ROW: piece.rows[order],
+        columns.time: piece.time[order],
+        **{name: piece.plots[order, k] for k, name in enumerate(columns.axes)},
+    }
+    arrays = [arrow_column(arrow, values[name]) for name in schema.names]
+    whole = arrow.Table.from_arrays(arrays, schema=schema)
+    ends = np.cumsum(np.bincount(of_row, minlength=partitions)).tolist()
+    for start, end in zip([0, *ends[:-1]], ends, strict=True):
+        yield whole.slice(start, end - start)
+
+
+def read_partition(
+    path: PathLike,
+    n_axes: int,
+    partition: int,
+    partitions: int,
+    *,
+    file: str,
+    rows: int = ROWS,
+) -> Iterator[Piece]:
+    """Read one partition of a file of partitions, piece by piece.
+
+    Parameters
+    ----------
+    path : str or path
+        From `write_partitions`.
+    n_axes, partitions : int
+        As they were there.
+    partition : int
+        Which of them, from 0.
+    file : str
+        Name of the file that was sorted, for messages.
+    rows : int
+        Rows of a piece, at most; but a row group at least.
+
+    Yields
+    ------
+    Piece
+        At least one row; `rows` are those of the file that was sorted.
+    """
+    arrow = import_pyarrow(str(path))
+    columns = _columns(n_axes)
+    with open(path, "rb") as stream:
+        source = arrow.parquet.ParquetFile(stream)
+        groups: list[int] = []
+        waiting = 0
+
+        def piece() -> Piece:
+            return _piece(source.read_row_groups(groups), columns, file)
+
+        for group in range(partition, source.num_row_groups, partitions):
+            count = source.metadata.row_group(group).num_rows
+            if groups and waiting + count > rows:
+                yield piece()
+                groups, waiting = [], 0
+            if count:
+                groups.append(group)
+                waiting += count
+        if groups:
+            yield piece()
+
+
+def _piece(table: Any, columns: Columns, file: str) -> Piece:
+    ids = table.column(columns.id).combine_chunks().dictionary_encode()
+    words = Words(tuple(ids.dictionary.to_pylist()), ids.indices.to_numpy().astype(np.int64))
+    plots = np.stack([table.column(name).to_numpy() for name in columns.axes], axis=1)
+    rows = table.column(_ROW).to_numpy()
+    return Piece(words, table.column(columns.time).to_numpy(), plots, rows, file)

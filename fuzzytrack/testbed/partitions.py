@@ -1,0 +1,232 @@
+"""Recordings tracked in partitions: on one core, on many, or on a cluster."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TypeVar
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
+from fuzzytrack.io.pieces import ROWS, read_pieces
+from fuzzytrack.io.shuffle import read_partition, write_partitions
+from fuzzytrack.testbed.streaming import OpenTracks
+from fuzzytrack.testbed.totals import Totals
+from fuzzytrack.trackers.lanes import LaneTracker
+
+__all__ = ["check_output_folder", "track_partitions"]
+
+Part = TypeVar("Part")
+
+# Tasks given to an executor at a time, done or not.
+_AHEAD = 128
+# Times that an executor is given a task that fails. Dask's reports a finished task as failed if its
+# worker dies while the result is fetched.
+_TRIES = 3
+
+
+@dataclass(frozen=True)
+class _Job:
+    tracker: LaneTracker
+    sigma: float | None
+    files: tuple[str, ...]
+    columns: Columns
+    partitions: int
+    rows: int
+    folder: str
+
+    def sorted_file(self, number: int) -> Path:
+        """Input file `number`, in partitions."""
+        return Path(self.folder) / "sorted" / f"file-{number:06d}.parquet"
+
+    def part(self, partition: int) -> Path:
+        return Path(self.folder) / f"part-{partition:05d}.parquet"
+
+
+def track_partitions(
+    tracker: LaneTracker,
+    files: Sequence[str],
+    columns: Columns,
+    output: str | os.PathLike[str],
+    *,
+    sigma: float | None = None,
+    partitions: int = 16,
+    rows: int = ROWS,
+    executor: Executor | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Totals:
+    """Track a recording, its tracks divided among partitions by their identity.
+
+    Parameters
+    ----------
+    tracker : LaneTracker
+        The tracker.
+    files : sequence of str
+        Files of the recording, in order of time.
+    columns : Columns
+        From `fuzzytrack.io.find_columns`.
+    output : str or path
+        Folder that is made, with one Parquet file a partition, ``part-00000.parquet`` and on; see
+        `fuzzytrack.io.piece_writer`. It appears whole or not at all.
+    sigma : float, optional
+        Standard deviation of the plots (m).
+    partitions : int
+        Number of partitions.
+    rows : int
+        Rows that a task holds at a time.
+    executor : concurrent.futures.Executor, optional
+        Does the work; its workers see the same files under the same names. One task after the other
+        in this process unless given.
+    progress : callable, optional
+        Called with the share of the tasks that are done.
+
+    Returns
+    -------
+    Totals
+
+    Raises
+    ------
+    DataError, ValueError, OSError
+        As `fuzzytrack.io.read_pieces`, `fuzzytrack.testbed.run_iter` and `check_output_folder`.
+
+    Notes
+    -----
+    First each input file is sorted into partitions, a task a file; then each partition is tracked
+    through all files, a task a partition, with the states of its own tracks only. A task reads
+    files and writes one, whole or not at all, so it can be done again anywhere: a worker that is
+    lost costs the time of its task. The disk holds the plots a second time until the end.
+
+    The rows of a track are in one file, in order of time, with the numbers of one run; those of
+    different tracks are mixed as the recording has them.
+    """
+    if partitions < 1:
+        raise ValueError(f"partitions must be at least 1, got {partitions}")
+    target = check_output_folder(output)
+    totals = Totals()
+    with _whole_folder(target) as draft:
+        job = _Job(
+            tracker,
+            sigma,
+            tuple(map(os.path.abspath, files)),
+            columns,
+            partitions,
+            rows,
+            str(draft),
+        )
+        job.sorted_file(0).parent.mkdir()
+        count = len(files) + partitions
+        done = 0
+        for task, many in ((_sort_file, len(files)), (_track_partition, partitions)):
+            for part in _results(executor, task, job, many):
+                if part is not None:
+                    totals.merge(part)
+                done += 1
+                if progress is not None:
+                    progress(done / count)
+        if not totals.tracks:
+            raise DataError(f"{files[0]}: holds no rows, only column names")
+        shutil.rmtree(job.sorted_file(0).parent)
+    return totals
+
+
+def check_output_folder(path: str | os.PathLike[str]) -> Path:
+    """Look ahead whether a folder can be made.
+
+    Raises
+    ------
+    DataError
+        If it exists and is not empty.
+    OSError
+        If it cannot be made, or is a file.
+    """
+    target = Path(path).resolve()
+    if target.exists() and not target.is_dir():
+        raise NotADirectoryError(None, "is not a folder", str(path))
+    if target.is_dir() and any(target.iterdir()):
+        raise DataError(f"{path}: holds files already; choose another folder")
+    if not target.parent.is_dir():
+        raise FileNotFoundError(None, f"there is no folder {target.parent}", str(path))
+    if not os.access(target.parent, os.W_OK):
+        raise PermissionError(None, f"folder {target.parent} cannot be written to", str(path))
+    return target
+
+
+@contextmanager
+def _whole_folder(target: Path) -> Iterator[Path]:
+    draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    draft.mkdir()
+    try:
+        yield draft
+        os.replace(draft, target)
+    finally:
+        # A task that could not be stopped may still write into it.
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+# -------------------------------------------------------------------- tasks
+
+
+def _sort_file(job: _Job, number: int) -> None:
+    pieces = read_pieces(job.files[number : number + 1], job.columns, rows=job.rows)
+    target = job.sorted_file(number)
+    write_partitions(target, pieces, len(job.columns.axes), job.partitions)
+
+
+def _track_partition(job: _Job, partition: int) -> Totals:
+    tracks, totals = OpenTracks(job.tracker, job.sigma, OUTPUTS), Totals()
+    with piece_writer(job.part(partition), job.columns) as write:
+        for number, file in enumerate(job.files):
+            for piece in read_partition(
+                job.sorted_file(number),
+                len(job.columns.axes),
+                partition,
+                job.partitions,
+                file=file,
+                rows=job.rows,
+            ):
+                tracked = tracks.advance(piece)
+                totals.add(tracked)
+                write(piece, tracked.outputs)
+    totals.close(tracks)
+    return totals
+
+
+def _results(
+    executor: Executor | None, task: Callable[[_Job, int], Part], job: _Job, count: int
+) -> Iterator[Part]:
+    """Results of a task for all numbers below `count`, as they finish."""
+    if executor is None:
+        for number in range(count):
+            yield task(job, number)
+        return
+    waiting = iter(range(count))
+    running: dict[Future[Part], tuple[int, int]] = {}
+    try:
+        while True:
+            for number in islice(waiting, _AHEAD - len(running)):
+                running[executor.submit(task, job, number)] = (number, 1)
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                number, tries = running.pop(future)
+                try:
+                    part = future.result()
+                except (BrokenExecutor, ValueError):
+                    raise
+                except Exception:
+                    if tries == _TRIES:
+                        raise
+                    running[executor.submit(task, job, number)] = (number, tries + 1)
+                else:
+                    yield part
+    finally:
+        for future in running:
+            future.cancel()

@@ -1,0 +1,89 @@
+import os
+import signal
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
+from fuzzytrack.io.pieces import find_columns
+from fuzzytrack.testbed.partitions import track_partitions
+
+TRACKER = AlphaBetaTracker(FixedGains(0.5, 0.2))
+
+
+@pytest.fixture
+def files(tmp_path):
+    rng = np.random.default_rng(8)
+    found = []
+    for k in range(3):
+        table = {
+            "id": [f"track {i}" for i in rng.integers(0, 30, 500)],
+            "t": 500.0 * k + np.arange(500),
+            "x": rng.normal(size=500),
+        }
+        found.append(str(tmp_path / f"f{k}.parquet"))
+        pq.write_table(pa.table(table), found[-1])
+    return found
+
+
+def sorted_rows(folder):
+    return pq.read_table(folder).sort_by([("id", "ascending"), ("t", "ascending")])
+
+
+def test_a_cluster_that_loses_a_worker(files, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    columns = find_columns(files, id="id")
+    here = track_partitions(TRACKER, files, columns, tmp_path / "here", partitions=1)
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        pids = client.run(os.getpid)
+        killed = []
+
+        def kill_one(share):
+            # The files are sorted, the partitions under way.
+            if share >= 0.3 and not killed:
+                killed.append(pids.popitem()[1])
+                os.kill(killed[0], signal.SIGKILL)
+
+        there = track_partitions(
+            TRACKER, files, columns, tmp_path / "there", partitions=12, rows=20,
+            executor=client.get_executor(), progress=kill_one,
+        )  # fmt: skip
+        assert killed
+        assert killed[0] not in client.run(os.getpid).values()
+    assert sorted_rows(tmp_path / "there") == sorted_rows(tmp_path / "here")
+    assert (there.tracks, there.plots) == (here.tracks, here.plots) == (30, 1500)
+    assert there.summary == pytest.approx(here.summary, rel=1e-12)
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_dir()) == ["here", "there"]
+
+
+def test_a_partition_may_be_empty(files, tmp_path):
+    columns = find_columns(files)  # one track
+    table = pq.read_table(files[0]).slice(0, 9)
+    pq.write_table(table, files[0])
+    (tmp_path / "out").mkdir()
+    track_partitions(TRACKER, files[:1], columns, tmp_path / "out", partitions=4, rows=2)
+    counts = [pq.read_metadata(p).num_rows for p in sorted((tmp_path / "out").iterdir())]
+    assert sorted(counts) == [0, 0, 0, 9]
+
+
+def test_errors_name_the_row_of_the_recording(files, tmp_path):
+    columns = find_columns(files, id="id")
+    with pytest.raises(DataError, match=r"f1.parquet: row \d+: time \d+ \(id 'track \d+'\) is ear"):
+        track_partitions(TRACKER, files[::-1], columns, tmp_path / "out", partitions=2, rows=99)
+    empty = pq.read_table(files[0]).slice(0, 0)
+    pq.write_table(empty, files[0])
+    with pytest.raises(DataError, match=r"f0\.parquet: holds no rows"):
+        track_partitions(TRACKER, files[:1], columns, tmp_path / "out", partitions=2)
+    assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == []
+
+
+def test_partitions_at_least_one(files, tmp_path):
+    with pytest.raises(ValueError, match="partitions must be at least 1, got 0"):
+        track_partitions(TRACKER, files, find_columns(files), tmp_path / "out", partitions=0)
