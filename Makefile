@@ -4,6 +4,7 @@ PYTHON ?= python3
 VENV ?= .venv
 PYTEST_ARGS ?= -n auto
 FUZZ_COUNT ?= 1000000
+BENCH_ARGS ?=
 
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip -qq --disable-pip-version-check --no-input
@@ -65,8 +66,8 @@ docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; 
 fuzz: $(VENV)/.installed-test ## Feed the rule-base loader FUZZ_COUNT broken files
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
 
-bench: $(VENV)/.installed-bench ## Measure speed on this machine
-	$(BIN)/python benchmarks/speed.py
+bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)
+	$(BIN)/python -m benchmarks $(BENCH_ARGS)
 
 # ---------------------------------------------------------------- tidying
 

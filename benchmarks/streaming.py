@@ -1,0 +1,109 @@
+"""Plot by plot: one track, and a scan of many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from benchmarks import peers
+from benchmarks.report import NotMeasured, Row, Target
+from benchmarks.scale import Scale
+from benchmarks.timing import ratio, take_turns
+from benchmarks.work import ALPHA, BETA, fixed_tracker, fuzzy_tracker, times_and_plots, warm
+
+__all__ = ["scan", "single"]
+
+SECTION = "Streaming (µs a step)"
+UNIT = "µs"
+
+
+def _stream(tracker: Any, plots: Any) -> Callable[[], Any]:
+    times = [float(k) for k in range(len(plots))]
+
+    def work() -> Any:
+        state = tracker.start(plots[0], times[0])
+        for k in range(1, len(plots)):
+            state = tracker.step(state, plots[k], times[k])
+        return state
+
+    return work
+
+
+def single(scale: Scale) -> list[Row]:
+    """One track of two axes."""
+    _, plots = times_and_plots(1, scale.stream_steps, axes=2)
+    walk = np.ascontiguousarray(plots[:, 0])
+    model = peers.Model(2, 1.0)
+    for tracker in (fuzzy_tracker(), fixed_tracker()):
+        warm(scale, tracker, 2)
+    works = {
+        "fuzzy gains": _stream(fuzzy_tracker(), walk),
+        "fixed gains": _stream(fixed_tracker(), walk),
+    }
+    makers = {
+        "FilterPy GHFilter": lambda: peers.filterpy_fixed(ALPHA, BETA),
+        "FilterPy KalmanFilter": lambda: peers.filterpy_kalman(model),
+        "Stone Soup Kalman": lambda: peers.stonesoup_kalman(model),
+    }
+    rows = []
+    for name, make in makers.items():
+        try:
+            works[name] = partial(make(), walk)
+        except NotMeasured as why:
+            rows.append(Row(SECTION, f"one track, against {name}", why=str(why)))
+    found = take_turns(works, scale.repeats)
+    each = 1e6 / scale.stream_steps
+    fuzzy, fixed = found["fuzzy gains"], found["fixed gains"]
+    ours = fuzzy.median * each
+    rows.insert(
+        0,
+        Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, target=Target("<=", 3.0),
+            note="One plot after the other through `step`, which checks them."),
+    )  # fmt: skip
+    for name in (name for name in makers if name in found):
+        theirs = found[name].median * each
+        if name == "FilterPy GHFilter":
+            rows.append(
+                Row(SECTION, "one track of 2 axes, fixed gains", fixed.median * each, UNIT, name,
+                    theirs, ratio(found[name], fixed),
+                    note="FilterPy's filter takes the vector, T = 1 and no missed plot; it checks "
+                    "nothing, and its state is changed in place.")
+            )  # fmt: skip
+        rows.append(
+            Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, name, theirs,
+                ratio(found[name], fuzzy),
+                note=f"{name} is not the same filter: it is what a user would use else.")
+        )  # fmt: skip
+    return rows
+
+
+def scan(scale: Scale) -> list[Row]:
+    """A scan of many tracks at once."""
+    tracker = fuzzy_tracker()
+    # Without a compiled step a scan takes long.
+    compiled = scale.compiles and hasattr(tracker, "compile")
+    tracks, steps = scale.scan_tracks, 200 if compiled else 5
+    _, plots = times_and_plots(tracks, steps, axes=2)
+    warm(scale, tracker, 2)
+    works = {"ours": _stream(tracker, plots)}
+    try:
+        track = peers.filterpy_kalman(peers.Model(2, 1.0))
+        works["FilterPy"] = lambda: track(plots[:, 0])
+    except NotMeasured:
+        track = None
+    found = take_turns(works, scale.repeats if compiled else 2)
+    each = 1e6 / steps
+    what = f"scan of {tracks:,} tracks x 2 axes, fuzzy gains"
+    ours = found["ours"].median * each
+    rows = [Row(SECTION, what, ours, UNIT, target=Target("<=", 60.0))]
+    if track is not None:
+        rows.append(
+            Row(SECTION, what, ours, UNIT, "FilterPy KalmanFilter",
+                found["FilterPy"].median * each * tracks,
+                ratio(found["FilterPy"], found["ours"], tracks),
+                note="FilterPy was given one track, the rest is extrapolated; not the same filter.")
+        )  # fmt: skip
+    return rows
