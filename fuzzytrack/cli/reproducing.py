@@ -14,7 +14,7 @@ from fuzzytrack.cli import options
 from fuzzytrack.cli.output import plain, print_json, print_table, progress, say, show, with_error
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import whole_file
-from fuzzytrack.papers.reproduction import PAPERS, Reproduction, part
+from fuzzytrack.papers.reproduction import COST, PAPERS, Reproduction, part
 from fuzzytrack.papers.reproduction import reproduce as rebuild
 from fuzzytrack.yamltree import suggestion
 
@@ -44,9 +44,11 @@ def reproduce(
     folder = None if output is None else _folder(output)
     found = []
     with progress(f"rebuilding {paper}") as watch:
-        for number, name in enumerate(chosen):
-            share = part(watch, number / len(chosen), (number + 1) / len(chosen))
-            found.append(rebuild(name, runs, seed, share))
+        before, all_of_it = 0.0, sum(COST[name] for name in chosen)
+        for name in chosen:
+            after = before + COST[name] / all_of_it
+            found.append(rebuild(name, runs, seed, part(watch, before, after)))
+            before = after
     written = [] if folder is None else _write(folder, found)
     if json:
         one = found[0].to_json_dict()

@@ -75,7 +75,7 @@ def _conventional(sigma_v: float) -> FixedGains:
 
 def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
     """Rebuild Figs. 1 to 6; see `fuzzytrack.papers.reproduce`."""
-    results = monte_carlo(scenario(), trackers(), runs, seed, progress=part(progress, 0.0, 0.9))
+    results = monte_carlo(scenario(), trackers(), runs, seed, progress=part(progress, 0.0, 0.6))
     noise = _adjusted_noise(min(runs, _GAIN_RUNS), seed)
     progress(1.0)
     rows = [row("Fig. 2", "largest true speed (m/s)", float(kim_lee_velocity().max()),

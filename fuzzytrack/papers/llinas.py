@@ -28,13 +28,13 @@ RUNS = 2000
 
 def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
     """Rebuild Tables 2.4 and 5.1 to 5.7, Figs. 5.1 to 5.3 and A.1; see `fuzzytrack.papers`."""
-    dense = field.dense(runs, seed, part(progress, 0.0, 0.5))
-    finer = field.finer_rows(runs, seed, dense["M4"], part(progress, 0.5, 0.65))
-    far = field.far_rows(runs, seed)
-    progress(0.8)
+    dense = field.dense(runs, seed, part(progress, 0.0, 0.4))
+    finer = field.finer_rows(runs, seed, dense["M4"], part(progress, 0.4, 0.45))
+    far = field.far_rows(runs, seed, part(progress, 0.45, 0.65))
     check = field.isotropic_rows(runs, seed)
-    progress(0.9)
+    progress(0.7)
     visited = field.visited_gains(runs, seed)
+    progress(0.8)
     rows = (
         *theory.noise_rows(runs, seed),
         *theory.map_rows(),

@@ -237,15 +237,19 @@ _FINER = (
 # -------------------------------------------------------------------- medium and sparse fields
 
 
-def far_rows(runs: int, seed: int) -> list[Row]:
+def far_rows(runs: int, seed: int, progress: Progress) -> list[Row]:
     """Tables 5.5 and 5.6, to an order of magnitude."""
     rows = []
+    few, everyone, done = min(runs, _FEW), trackers(), 0
     for spacing, (table, published) in _FAR.items():
-        few = min(runs, _FEW)
-        scenarios = [_far_scenario(name, spacing) for name in MANEUVERS]
-        found = [monte_carlo(s, trackers(), few, seed).mean_error() for s in scenarios]
+        found = []
+        for name in MANEUVERS:
+            results = monte_carlo(_far_scenario(name, spacing), everyone, few, seed)
+            found.append(results.mean_error())
+            done += 1
+            progress(done / (len(_FAR) * len(MANEUVERS)))
         ours = np.mean(found, axis=0)
-        for label, value, number in zip(trackers(), ours.tolist(), published.tolist(), strict=True):
+        for label, value, number in zip(everyone, ours.tolist(), published.tolist(), strict=True):
             # Half a decade either way
             factor = math.sqrt(10.0)
             within = number * ((factor - 1) if value > number else (1 - 1 / factor))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["PAPERS", "Progress", "Reproduction", "Row", "part", "reproduce", "row"]
+__all__ = ["COST", "PAPERS", "Progress", "Reproduction", "Row", "part", "reproduce", "row"]
 
 #: Called with the share of the work that is done.
 Progress = Callable[[float], None]
@@ -24,6 +24,9 @@ PAPERS = {
     "njonjo": "njonjo",
     "zhang-jiang": "zhang_jiang",
 }
+
+#: About how long each takes, beside the others.
+COST = {"alwagih-abdulla": 5, "kim-lee": 1, "llinas": 8, "njonjo": 9, "zhang-jiang": 0.1}
 
 MATCHES, DIFFERS, NOT_STATED = "matches", "differs", "not stated"
 

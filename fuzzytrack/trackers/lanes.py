@@ -282,7 +282,8 @@ def announce(tracker: object, n_axes: int, coordinates: int) -> None:
         Number of coordinates in all.
     """
     if isinstance(tracker, LaneTracker):
-        runner(tracker, n_axes if tracker.coupled else 1).work += coordinates
+        core = runner(tracker, n_axes if tracker.coupled else 1)
+        core.horizon = max(core.horizon, core.work + coordinates)
 
 
 @lru_cache(maxsize=256)

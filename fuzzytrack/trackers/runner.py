@@ -73,14 +73,16 @@ class Runner:
     ----------
     recursion : Recursion
     work : int
-        Coordinates that were tracked so far, or are announced: a job in many parts may raise it
-        before the first.
+        Coordinates that were tracked so far.
+    horizon : int
+        What `work` will be after the jobs that were announced.
     hop : callable or None
         After `compile`, the function of `fuzzytrack.trackers.passage.hop_function`.
     """
 
     recursion: Recursion
     work: int = 0
+    horizon: int = 0
     hop: Callable[..., int] | None = field(default=None, init=False, repr=False)
     _compiled_runs: dict[bool, Callable[..., int]] = field(
         default_factory=dict, init=False, repr=False
@@ -139,7 +141,7 @@ class Runner:
             If a plot is infinite.
         """
         if native is None:
-            native = self.work + plots.size > COMPILE_ABOVE
+            native = max(self.horizon, self.work + plots.size) > COMPILE_ABOVE
         self.work += plots.size
         if native:
             return self._run_compiled(lanes, plots, dts, sigmas, keep, threads)

@@ -31,7 +31,11 @@ def test_announced_work_is_compiled_from_its_first_part(monkeypatch):
         lambda self, *given: compiled.append(1) or self._run_plain(*given[:5]),
     )
     tracker = ft.AlphaBetaTracker(ft.FixedGains(0.4322, 0.1234))
-    announce(tracker, 2, 101)
+    announce(tracker, 2, 100)
+    for _ in range(12):
+        tracker.run(np.arange(4), np.zeros((4, 2)))
+    assert compiled == []
+    announce(tracker, 2, 5)
     tracker.run(np.arange(4), np.zeros((4, 2)))
     assert compiled == [1]
     announce(object(), 2, 101)
