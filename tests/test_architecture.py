@@ -11,6 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "fuzzytrack"
 LAYERS = [
     {"errors"},
     {"plugins", "yamltree"},
+    {"shipped"},
     {"gains", "fuzzy"},
     {"schedulers"},
     {"trackers"},

@@ -6,9 +6,10 @@ import os
 from pathlib import Path
 
 from fuzzytrack.errors import ScenarioError
+from fuzzytrack.shipped import Shipped
 from fuzzytrack.testbed.scenario import Scenario
 from fuzzytrack.testbed.scenario_reader import ScenarioReader
-from fuzzytrack.yamltree import MAX_BYTES, Document, quoted, suggestion
+from fuzzytrack.yamltree import Document
 
 __all__ = [
     "load_scenario",
@@ -17,6 +18,8 @@ __all__ = [
     "scenario_source",
     "shipped_scenarios",
 ]
+
+_SHIPPED = Shipped("scenario", "scenarios", "warship.yaml", ScenarioError)
 
 
 def loads_scenario(text: str | bytes, file: str = "<text>") -> Scenario:
@@ -73,18 +76,18 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
         If there is no such name, or the file cannot be read, or is no scenario.
     """
     path = scenario_path(name_or_path)
-    return loads_scenario(_text(path), str(path))
+    return loads_scenario(_SHIPPED.read(path), str(path))
 
 
 def scenario_source(name_or_path: str | os.PathLike[str]) -> str:
     """Paper, or other origin, of a scenario, without making it; as for `load_scenario`."""
     path = scenario_path(name_or_path)
-    return ScenarioReader(Document(_text(path), str(path), failure=ScenarioError)).source()
+    return ScenarioReader(Document(_SHIPPED.read(path), str(path), failure=ScenarioError)).source()
 
 
 def shipped_scenarios() -> tuple[str, ...]:
     """Names of the scenarios that come with fuzzytrack, in alphabetical order."""
-    return tuple(sorted(path.stem for path in _shipped_directory().glob("*.yaml")))
+    return _SHIPPED.names()
 
 
 def scenario_path(name_or_path: str | os.PathLike[str]) -> Path:
@@ -105,36 +108,4 @@ def scenario_path(name_or_path: str | os.PathLike[str]) -> Path:
     ScenarioError
         If it is the name of no shipped scenario.
     """
-    if not isinstance(name_or_path, str) or _is_path(name_or_path):
-        return Path(name_or_path)
-    names = shipped_scenarios()
-    if name_or_path not in names:
-        raise ScenarioError(
-            f"unknown scenario {quoted(name_or_path)}{suggestion(name_or_path, names)}; "
-            "or a path that ends in .yaml"
-        )
-    return _shipped_directory() / f"{name_or_path}.yaml"
-
-
-def _text(path: Path) -> bytes:
-    try:
-        with open(path, "rb") as stream:
-            # One byte more than allowed is enough to refuse the rest.
-            return stream.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        why = error.strerror if isinstance(error, OSError) else str(error)
-        raise ScenarioError(f"cannot read scenario {quoted(str(path))}: {why}") from error
-
-
-def _is_path(text: str) -> bool:
-    separators = {"/", os.sep}
-    return text.endswith((".yaml", ".yml")) or any(s in text for s in separators)
-
-
-def _shipped_directory() -> Path:
-    package = Path(__file__).resolve().parent.parent
-    # Inside an installed package, or beside it in a source checkout.
-    for directory in (package / "scenarios", package.parent / "scenarios"):
-        if directory.is_dir():
-            return directory
-    raise ScenarioError(f"the shipped scenarios are missing; they belong in {package}")
+    return _SHIPPED.path(name_or_path)

@@ -14,9 +14,8 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fuzzytrack import yamltree
+from fuzzytrack import shipped, yamltree
 from fuzzytrack.errors import Location, RuleBaseError, Word
-from fuzzytrack.fuzzy import loading
 from fuzzytrack.fuzzy.loading import (
     load_rulebase,
     loads_rulebase,
@@ -546,13 +545,13 @@ def test_errors_name_the_file(tmp_path):
 def test_an_installed_package_carries_its_own(monkeypatch, tmp_path):
     shutil.copytree(rulebase_path("tipper").parent, tmp_path / "package" / "rulebases")
     (tmp_path / "package" / "rulebases" / "valve.yaml").unlink()
-    monkeypatch.setattr(loading, "__file__", str(tmp_path / "package" / "fuzzy" / "loading.py"))
+    monkeypatch.setattr(shipped, "__file__", str(tmp_path / "package" / "shipped.py"))
     assert rulebase_path("tipper") == tmp_path / "package" / "rulebases" / "tipper.yaml"
     assert "valve" not in shipped_rulebases()
 
 
 def test_missing_directory(monkeypatch, tmp_path):
-    monkeypatch.setattr(loading, "__file__", str(tmp_path / "a" / "b" / "loading.py"))
+    monkeypatch.setattr(shipped, "__file__", str(tmp_path / "a" / "b" / "shipped.py"))
     with pytest.raises(RuleBaseError, match="shipped rule bases are missing"):
         shipped_rulebases()
 

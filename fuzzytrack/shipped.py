@@ -1,0 +1,92 @@
+"""YAML files that come with fuzzytrack: found by name, or any file by its path."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from fuzzytrack.errors import FileError
+from fuzzytrack.yamltree import MAX_BYTES, quoted, suggestion
+
+__all__ = ["Shipped"]
+
+PathOrName = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Shipped:
+    """Shipped files of one kind.
+
+    Attributes
+    ----------
+    what : str
+        What they are, for messages: "rule base".
+    folder : str
+        Folder that holds them: inside an installed package, beside it in a source checkout.
+    marker : str
+        A file that tells the folder from another one of its name.
+    failure : type
+        The error to raise.
+    """
+
+    what: str
+    folder: str
+    marker: str
+    failure: type[FileError]
+
+    def names(self) -> tuple[str, ...]:
+        """Names of the files, without suffix, in alphabetical order."""
+        return tuple(sorted(path.stem for path in self._directory().glob("*.yaml")))
+
+    def path(self, name_or_path: PathOrName) -> Path:
+        """Path of a shipped file by name, or the path that was given.
+
+        Parameters
+        ----------
+        name_or_path : str or path
+            A name, or a path: anything that ends in ``.yaml`` or ``.yml``, holds a separator or is
+            a path object. The file need not exist.
+
+        Raises
+        ------
+        FileError
+            Of the kind `failure`, if it is the name of no shipped file.
+        """
+        if not isinstance(name_or_path, str) or _is_path(name_or_path):
+            return Path(name_or_path)
+        names = self.names()
+        if name_or_path not in names:
+            raise self.failure(
+                f"unknown {self.what} {quoted(name_or_path)}{suggestion(name_or_path, names)}; "
+                "or a path that ends in .yaml"
+            )
+        return self._directory() / f"{name_or_path}.yaml"
+
+    def read(self, path: Path) -> bytes:
+        """Text of a file, up to one byte more than `fuzzytrack.yamltree` takes.
+
+        Raises
+        ------
+        FileError
+            Of the kind `failure`, if it cannot be read.
+        """
+        try:
+            with open(path, "rb") as stream:
+                # One byte more than allowed is enough to refuse the rest.
+                return stream.read(MAX_BYTES + 1)
+        except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else str(error)
+            raise self.failure(f"cannot read {self.what} {quoted(str(path))}: {why}") from error
+
+    def _directory(self) -> Path:
+        package = Path(__file__).resolve().parent
+        for directory in (package / self.folder, package.parent / self.folder):
+            if (directory / self.marker).is_file():
+                return directory
+        raise self.failure(f"the shipped {self.what}s are missing; they belong in {package}")
+
+
+def _is_path(text: str) -> bool:
+    separators = {"/", os.sep}
+    return text.endswith((".yaml", ".yml")) or any(s in text for s in separators)
