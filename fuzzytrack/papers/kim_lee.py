@@ -206,18 +206,21 @@ def _pictures(results: Results, noise: dict[str, tuple[Array, Array]]) -> dict[s
     rms = _rms(results.measured)
     npe = {label: curve.position / SIGMA for label, curve in curves.items()}
     # The mean estimate over the runs
-    velocity = {"true": kim_lee_velocity()[:, 0]}
+    true = kim_lee_velocity()[:, 0]
+    velocity = {}
     for label in _DRAWN:
         assert results.velocity is not None
         error = results.velocity[results.names.index(label)].mean(axis=0)
-        velocity[label] = velocity["true"] + error[:, 0]
+        velocity[label] = true + error[:, 0]
+    # After the trackers, so that these have the same colours in all pictures.
+    velocity["true"] = true
     track = {"true": position[:, 0] / 1e3, "plots of one run": results.sample.plots[:, 0] / 1e3}
     sigma_v = {label: np.median(found, axis=1) for label, (found, _) in noise.items()}
     return {
         "fig1-trajectory": _drawing(time, track, "position (km)"),
         "fig2-velocity": _drawing(time, velocity, "velocity, mean over runs (m/s)"),
         "fig3-position-rmse": _drawing(
-            time, {"plots": rms} | {k: c.position for k, c in curves.items()}, "RMSE (m)"
+            time, {k: c.position for k, c in curves.items()} | {"plots": rms}, "RMSE (m)"
         ),
         "fig4-velocity-rmse": _drawing(
             time, {k: c.velocity for k, c in curves.items()}, "RMSE of velocity (m/s)"
