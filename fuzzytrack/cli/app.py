@@ -2,30 +2,76 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
+from typer.main import get_command
 
 from fuzzytrack import __version__
-from fuzzytrack.cli.certifying import certify
-from fuzzytrack.cli.comparing import compare
-from fuzzytrack.cli.demonstration import demo
 from fuzzytrack.cli.errors import Commands
-from fuzzytrack.cli.experimenting import experiment
-from fuzzytrack.cli.gains import design, gains
-from fuzzytrack.cli.listing import trackers
-from fuzzytrack.cli.output import say
-from fuzzytrack.cli.reproducing import reproduce
-from fuzzytrack.cli.rulebases import rulebase
-from fuzzytrack.cli.simulating import simulate
-from fuzzytrack.cli.surface import surface
-from fuzzytrack.cli.tracking import track
 
 __all__ = ["app"]
 
+# Where each command lives, and what the list of commands says of it. A module is imported when its
+# command is called: nobody waits for those that he does not use.
+COMMANDS = {
+    "demo": ("demonstration:demo", "Track a simulated turning target, and draw what happens."),
+    "track": (
+        "tracking:track",
+        "Track the plots of a file, or of a folder of files in order of their names.",
+    ),
+    "compare": ("comparing:compare", "Compare trackers on a true track with simulated noise."),
+    "testbed": (
+        "experimenting:experiment",
+        "Run trackers on many random draws of a scenario.",
+    ),
+    "simulate": (
+        "simulating:simulate",
+        "Write the plots of a simulated target, beside the truth.",
+    ),
+    "surface": ("surface:surface", "Draw the control surface of a rule base."),
+    "certify": (
+        "certifying:certify",
+        "Prove that no order of gains makes the error grow, or show one.",
+    ),
+    "gains": ("gains:gains", "Say what fixed gains do: stability, poles, noise and lag."),
+    "trackers": (
+        "listing:trackers",
+        "List what there is to track with, with its source; plug-ins included.",
+    ),
+    "reproduce": (
+        "reproducing:reproduce",
+        "Rebuild the experiments of a paper, and hold its numbers against ours.",
+    ),
+    "rulebase": ("rulebases:rulebase", "List, show, check, explain and edit rule bases."),
+    "design": ("gains:design", "Choose gains by a rule of design, and say what they do."),
+}
+
+
+class Application(Commands):
+    """The commands by name; the one that is called takes the place of its line in the list."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the command that is called."""
+        name, _, rest = super().resolve_command(ctx, args)
+        return name, load_command(str(name)), rest
+
+
+def load_command(name: str) -> Any:
+    """Import a command, with its arguments and options."""
+    module, _, attribute = COMMANDS[name][0].partition(":")
+    found = getattr(import_module(f"fuzzytrack.cli.{module}"), attribute)
+    if isinstance(found, typer.Typer):
+        return get_command(found)
+    alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+    alone.command(name)(found)
+    return get_command(alone)
+
+
 app = typer.Typer(
     name="fuzzytrack",
-    cls=Commands,
+    cls=Application,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -33,23 +79,18 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-app.command()(demo)
-app.command()(track)
-app.command()(compare)
-app.command("testbed")(experiment)
-app.command()(simulate)
-app.command()(surface)
-app.add_typer(rulebase, name="rulebase")
-app.command()(certify)
-app.command()(gains)
-app.add_typer(design, name="design")
-app.command()(trackers)
-app.command()(reproduce)
+
+def _line() -> None:
+    """Stand for a command in the list."""
+
+
+for _name, (_home, _help) in COMMANDS.items():
+    app.command(_name, help=_help)(_line)
 
 
 def _version(wanted: bool) -> None:
     if wanted:
-        say(f"fuzzytrack {__version__}")
+        typer.echo(f"fuzzytrack {__version__}")
         raise typer.Exit
 
 

@@ -15,6 +15,7 @@ __all__ = ["design", "gains"]
 
 design = typer.Typer(
     no_args_is_help=True,
+    add_completion=False,
     help="Choose gains by a rule of design, and say what they do.",
     rich_markup_mode=None,
 )

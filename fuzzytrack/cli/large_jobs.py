@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack
 from dataclasses import dataclass
 
@@ -20,15 +19,7 @@ from fuzzytrack.testbed.totals import Totals
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lanes import LaneTracker
 
-__all__ = ["LargeJob", "is_large"]
-
-# Bytes of a file above which it is tracked in pieces.
-_LARGE = 100_000_000
-
-
-def is_large(file: str) -> bool:
-    """Whether to track a file in pieces although nobody asks for it."""
-    return os.path.isfile(file) and os.path.getsize(file) > _LARGE
+__all__ = ["LargeJob"]
 
 
 @dataclass(frozen=True)

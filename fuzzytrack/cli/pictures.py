@@ -6,12 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fuzzytrack.io.files import PathLike, check_output, whole_file
-
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fuzzytrack.fuzzy.system import FuzzySystem
+    from fuzzytrack.io.files import PathLike
 
 __all__ = ["check_picture", "save_picture", "surfaces"]
 
@@ -20,6 +19,8 @@ FORMATS = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".
 
 def check_picture(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
     """Look ahead whether a picture can be written; ValueError or OSError if not."""
+    from fuzzytrack.io.files import check_output
+
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         raise ValueError(
@@ -44,6 +45,8 @@ def save_picture(
     """
     check_picture(path, inputs)
     import matplotlib as mpl
+
+    from fuzzytrack.io.files import whole_file
 
     mpl.use("Agg")
     from matplotlib import pyplot as plt

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.errors import one_line
 from fuzzytrack.cli.output import print_json, print_table, say
-from fuzzytrack.cli.review import Review, review
 from fuzzytrack.cli.rulebase_tables import as_json, explanation, print_explanation, print_rulebase
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path, shipped_rulebases
-from fuzzytrack.fuzzy.saving import set_cell
-from fuzzytrack.fuzzy.schema import dumps_schema
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.io.files import whole_file
+
+if TYPE_CHECKING:
+    from fuzzytrack.cli.review import Review
 
 __all__ = ["rulebase"]
 
 rulebase = typer.Typer(
     no_args_is_help=True,
+    add_completion=False,
     help="List, show, check, explain and edit rule bases.",
     rich_markup_mode=None,
 )
@@ -67,6 +67,8 @@ def check(
     json: options.Json = False,
 ) -> None:
     """Check rule bases: what is right, or the place of the first mistake."""
+    from fuzzytrack.cli.review import review
+
     reviews: list[dict[str, Any]] = []
     wrong = False
     for file in files:
@@ -130,6 +132,9 @@ def set_(
     ] = None,
 ) -> None:
     """Change one cell of a table, or one rule; comments stay."""
+    from fuzzytrack.fuzzy.saving import set_cell
+    from fuzzytrack.io.files import whole_file
+
     where = options.pairs(cell, "--cell")
     source = rulebase_path(file)
     if output is None and file in shipped_rulebases():
@@ -155,9 +160,13 @@ def schema(
     ] = None,
 ) -> None:
     """Print the JSON Schema of rule-base files, for editors."""
+    from fuzzytrack.fuzzy.schema import dumps_schema
+
     if output is None:
         say(dumps_schema().rstrip())
         return
+    from fuzzytrack.io.files import whole_file
+
     with whole_file(output) as draft:
         draft.write_text(dumps_schema(), encoding="utf-8")
     say(f"wrote {output}")

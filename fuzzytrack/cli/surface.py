@@ -14,8 +14,6 @@ from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, kalata_damping
-from fuzzytrack.io.files import check_output
-from fuzzytrack.io.tables import table_writer, write_table
 
 __all__ = ["grid_table", "surface"]
 
@@ -53,17 +51,28 @@ def surface(
     fixed = {} if at is None else options.numbers_at(at, others)
     if output is not None:
         check_picture(output)
-    if csv is not None:
-        table_writer(csv)
-        check_output(csv)
-    table = grid_table(system, points, fixed)
-    if csv is not None:
-        write_table(csv, table)
+    table = _written(system, points, fixed, csv)
     if output is not None:
         save_picture(output, lambda: surfaces(system, points, fixed or None))
     _print_ranges(system, table)
     for written in filter(None, (output, csv)):
         say(f"wrote {written}")
+
+
+def _written(
+    system: FuzzySystem, points: int, fixed: dict[str, float], csv: str | None
+) -> dict[str, Array]:
+    """Table over the grid; written, if there is a file for it."""
+    if csv is None:
+        return grid_table(system, points, fixed)
+    from fuzzytrack.io.files import check_output
+    from fuzzytrack.io.tables import table_writer, write_table
+
+    table_writer(csv)
+    check_output(csv)
+    table = grid_table(system, points, fixed)
+    write_table(csv, table)
+    return table
 
 
 def grid_table(system: FuzzySystem, points: int, fixed: dict[str, float]) -> dict[str, Array]:

@@ -12,14 +12,12 @@ import typer
 from numpy.typing import NDArray
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.large_jobs import LargeJob, is_large
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.tables import table_writer
 from fuzzytrack.io.tracks import Recording, read_tracks, write_tracks
 from fuzzytrack.testbed.ragged import run_tracks
-from fuzzytrack.testbed.totals import Totals
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lanes import LaneTracker
 from fuzzytrack.trackers.result import TrackResult
@@ -28,10 +26,15 @@ from fuzzytrack.trackers.state import Gains
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from fuzzytrack.cli.large_jobs import LargeJob
+    from fuzzytrack.testbed.totals import Totals
+
 __all__ = ["read", "track"]
 
 Array = NDArray[np.float64]
 
+# Bytes of a file above which it is tracked in pieces although nobody asks for it.
+_LARGE = 100_000_000
 # With more tracks than this, only totals are printed.
 _LISTED = 20
 _HEADS = ("plots", "missed", "duration (s)", "innovation RMS", "mean α", "mean β")
@@ -91,8 +94,10 @@ def track(
         apart
         or chunk_rows is not None
         or os.path.isdir(file)
-        or (is_large(file) and isinstance(chosen, LaneTracker) and not (sort or plot))
+        or (_is_large(file) and isinstance(chosen, LaneTracker) and not (sort or plot))
     ):
+        from fuzzytrack.cli.large_jobs import LargeJob
+
         _check_pieces(sort, plot)
         coordinates = None if axes is None else options.names(axes, "--axes")
         job = LargeJob.of(file, chosen, sigma, chunk_rows, time=time, id=id, axes=coordinates)
@@ -125,6 +130,10 @@ def read(file: str, time: str | None, id: str | None, axes: str | None, sort: bo
     chosen = None if axes is None else options.names(axes, "--axes")
     with progress("reading") as watch:
         return read_tracks(file, time=time, id=id, axes=chosen, sort=sort, progress=watch)
+
+
+def _is_large(file: str) -> bool:
+    return os.path.isfile(file) and os.path.getsize(file) > _LARGE
 
 
 def _look_ahead(file: str, output: str | None, plot: str | None) -> None:

@@ -6,6 +6,7 @@ import inspect
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 import fuzzytrack.schedulers.noise_normalization  # noqa: F401
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.kernel import infer_function
+from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.reader import SCHEDULER_KEYS
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
@@ -84,6 +86,10 @@ class FuzzyScheduler(GainScheduler):
         _never_silent(self.rules, self.system)
         infer_function(self.system)
 
+    def __getstate__(self) -> dict[str, Any]:
+        # Tables are large, and quickly made again where they are wanted.
+        return {key: value for key, value in vars(self).items() if key != "system"}
+
     @property
     def coupled(self) -> bool:  # type: ignore[override]
         """Whether one set of gains serves all axes, as the normalisation says."""
@@ -104,7 +110,7 @@ class FuzzyScheduler(GainScheduler):
         """Whether a new track has the gains of a growing memory first."""
         return any(key == "opening" for key, _ in self.rules.scheduler)
 
-    @property
+    @cached_property
     def system(self) -> FuzzySystem:
         """The fuzzy system behind the gains, to explain and draw."""
         return FuzzySystem(self.rules, self.method)
@@ -328,6 +334,9 @@ def _conversion(rules: RuleBase) -> Conversion:
 
 def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:
     """A tracker cannot use NaN gains: find inputs at which no rule fires."""
+    # Sets that share out every point, and a rule for each of their combinations: nothing to search.
+    if system.method == "exact" and find_ramps(rules) is not None:
+        return
     axes = []
     for variable in rules.inputs:
         universe = variable.universe

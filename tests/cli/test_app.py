@@ -7,6 +7,7 @@ import pytest
 
 import fuzzytrack
 from fuzzytrack.cli import listing
+from fuzzytrack.cli.app import COMMANDS, load_command
 from fuzzytrack.errors import PluginWarning
 from fuzzytrack.trackers.catalog import CatalogEntry
 
@@ -29,15 +30,42 @@ def test_help(run):
         assert "Usage:" in result.output
 
 
-def test_help_loads_nothing_heavy():
+HEAVY = {"numba", "scipy", "skfuzzy", "matplotlib", "pyarrow", "pandas", "dask", "distributed"}
+OTHERS = {f"fuzzytrack.{name}" for name in ("papers", "plotting", "cli.experimenting", "cli.gains")}
+TRACK = ("track", "a.csv", "--time", "t", "--axes", "x,y", "--tracker", "stiffness-damping")
+
+
+@pytest.mark.parametrize(
+    ("words", "unused"),
+    [
+        (("--help",), {"numpy", "yaml", "rich.table", "fuzzytrack.cli.tracking"}),
+        (("--version",), {"numpy", "yaml", "rich.table", "fuzzytrack.cli.tracking"}),
+        (("rulebase", "list"), {"fuzzytrack.trackers", "fuzzytrack.io", "fuzzytrack.testbed"}),
+        (TRACK, {"fuzzytrack.cli.large_jobs", "fuzzytrack.fuzzy.saving"}),
+    ],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+def test_a_command_imports_what_it_needs(words, unused, tmp_path):
+    rows = "".join(f"{k},{3 * k},{k * k % 7}\n" for k in range(1000))
+    (tmp_path / "a.csv").write_text("t,x,y\n" + rows)
     code = (
-        "import sys\n"
-        "from fuzzytrack.cli.app import app\n"
-        "heavy = {'numba', 'matplotlib', 'scipy', 'skfuzzy', 'pyarrow'} & set(sys.modules)\n"
-        "sys.exit(', '.join(sorted(heavy)) or None)"
+        "import atexit, sys\n"
+        "atexit.register(lambda: print(*sys.modules, file=sys.stderr))\n"
+        "from fuzzytrack.cli import main; main()"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stderr == ""
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    loaded = set(done.stderr.split())
+    assert "fuzzytrack.cli.app" in loaded
+    assert (HEAVY | OTHERS | unused) & loaded == set()
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_list_of_commands_says_what_they_say_of_themselves(name):
+    help = load_command(name).help
+    assert " ".join(help.split("\n\n")[0].split()) == COMMANDS[name][1]
 
 
 def test_unknown_command(fails):

@@ -6,7 +6,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from fuzzytrack.cli import large_jobs
+from fuzzytrack.cli import tracking
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def test_csv_in_and_out(run, folder, tmp_path):
 
 def test_a_large_file_goes_in_pieces_by_itself(run, folder, tmp_path, monkeypatch):
     path, out = tmp_path / "whole.parquet", tmp_path / "o.parquet"
-    monkeypatch.setattr(large_jobs, "_LARGE", 1000)
+    monkeypatch.setattr(tracking, "_LARGE", 1000)
     found = json.loads(run("track", path, "--id", "id", "-o", out, "--json").stdout)
     assert found["tracks"] is None
     assert found["number"] == 10

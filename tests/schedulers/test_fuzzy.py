@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.schedulers import normalizations
@@ -212,6 +213,31 @@ def test_schedulers_of_equal_rules_are_equal(rules):
     assert hash(one) == hash(other)
     assert pickle.loads(pickle.dumps(one)) == one
     assert one != ft.FuzzyScheduler(rules, "table")
+
+
+def test_the_system_is_made_once_and_left_behind(rules):
+    scheduler = ft.FuzzyScheduler(rules, "table")
+    assert scheduler.system is scheduler.system
+    size = len(pickle.dumps(scheduler))
+    assert size < scheduler.system.table.values["stiffness"].nbytes
+    twin = pickle.loads(pickle.dumps(scheduler))
+    assert twin.kernel(1)(3.0, -10.0, 1.0, 1.0, (0.5,)) == scheduler.kernel(1)(
+        3.0, -10.0, 1.0, 1.0, (0.5,)
+    )
+
+
+@pytest.mark.parametrize("name", ["chan-style", "omega-schedule", "stiffness-damping"])
+def test_rule_bases_of_ramps_are_never_silent(name):
+    rules = ft.load_rulebase(name)
+    assert find_ramps(rules) is not None
+    axes = []
+    for variable in rules.inputs:
+        corners = {p for s in variable.sets for p in s.breakpoints()}
+        beside = {np.nextafter(p, toward) for p in corners for toward in (-np.inf, np.inf)}
+        axes.append(sorted(corners | beside | set(variable.universe.values)))
+    grid = dict(zip(rules.input_names, np.meshgrid(*axes), strict=True))
+    for values in ft.FuzzySystem(rules)(**grid).values():
+        assert not np.isnan(values).any()
 
 
 def test_scaled_innovations_need_sigma(rules):
