@@ -69,6 +69,8 @@ def find_ramps(rules: RuleBase) -> Ramps | None:
     operators = rules.operators
     if (operators.conjunction, operators.disjunction) != ("product", "sum"):
         return None
+    if operators.defuzzification not in ("centroid", "weighted-centers"):
+        return None
     orders = [_order(variable) for variable in rules.inputs]
     cells = {}
     for output in rules.outputs:
@@ -162,11 +164,24 @@ def _expression(weights: Array, axis: int) -> str:
             continue
         name = f"r{axis}_{j}"
         if j == 0:
-            terms.append(f" + {inner}")
-        elif inner in ("1.0", "-1.0"):
-            terms.append(f" + {name}" if inner == "1.0" else f" - {name}")
-        elif inner.startswith("-") and part.ndim == 0:
-            terms.append(f" - {inner[1:]} * {name}")
+            terms.append(inner)
+        elif inner == "1.0":
+            terms.append(name)
+        elif inner == "-1.0":
+            terms.append(f"-{name}")
         else:
-            terms.append(f" + {inner} * {name}" if part.ndim == 0 else f" + {name} * ({inner})")
-    return "".join(terms).removeprefix(" + ").removeprefix(" ")
+            terms.append(f"{inner} * {name}" if part.ndim == 0 else f"{name} * ({inner})")
+    return _sum(terms)
+
+
+def _sum(terms: list[str]) -> str:
+    """Sum of sums of halves: fewest additions then wait for one another."""
+    # None that starts with a minus, if it can be helped.
+    terms = sorted(terms, key=lambda term: term.startswith("-"))
+    if len(terms) < 3:
+        return " + ".join(terms).replace("+ -", "- ")
+    half = (len(terms) + 1) // 2
+    rest = _sum(terms[half:])
+    if len(terms) - half > 1:
+        rest = f"({rest})"
+    return f"{_sum(terms[:half])} + {rest}".replace("+ -", "- ")

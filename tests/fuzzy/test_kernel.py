@@ -130,6 +130,27 @@ def test_what_cannot_be_written_out_says_what_can():
         infer_function(ft.FuzzySystem(two, "relation"))
 
 
+@pytest.mark.parametrize("defuzzification", ["bisector", "mom"])
+def test_ramps_are_for_means_alone(defuzzification):
+    # Output sets of one area, and inputs that share out every point.
+    sets = builders.triangles(("low", "high"), (0.0, 1.0))
+    output = tuple(FuzzySet(s, "trimf", p) for s, p in (("p", (0, 1, 2)), ("q", (4, 4.5, 6))))
+    rules = RuleBase(
+        name="even",
+        inputs=(Variable("x", Universe(0, 1, 11), sets),),
+        outputs=(Variable("y", Universe(0, 6, 61), output),),
+        operators=Operators("product", "sum", "centroid"),
+        rules=(
+            Rule((("x", "low"),), (Consequent("y", "p"),)),
+            Rule((("x", "high"),), (Consequent("y", "q"),)),
+        ),
+    )
+    expect_equal(ft.FuzzySystem(rules), np.linspace(0, 1, 21)[:, None])
+    other = replace(rules, operators=Operators("product", "sum", defuzzification))
+    with pytest.raises(ValueError, match=f"for {defuzzification} use method='relation'"):
+        infer_function(ft.FuzzySystem(other))
+
+
 @given(st.floats(-5, 5), st.floats(-5, 5))
 def test_names_of_a_rule_base_stay_out_of_the_source(x, z):
     base = sparse_base(default=0.5)
