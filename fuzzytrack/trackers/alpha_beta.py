@@ -91,5 +91,5 @@ class AlphaBetaTracker(LaneTracker):
             rows,
             memory,
             lambda stride: step_function(scheduler, rows, two_point, stride),
-            lambda stride, gains: steady_function(scheduler, rows, stride, gains),
+            lambda stride, results: steady_function(scheduler, rows, stride, results),
         )

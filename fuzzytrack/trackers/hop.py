@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzytrack.trackers.passage import BLOCK, aligned
+from fuzzytrack.trackers.rows import BLOCK, aligned
 from fuzzytrack.trackers.runner import Runner
 from fuzzytrack.trackers.state import TrackState
 

@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.trackers.hop import Hop
@@ -67,6 +67,7 @@ class LaneTracker(ABC):
         state: TrackState | None = None,
         keep: Sequence[str] | None = None,
         threads: int | None = None,
+        dtype: DTypeLike = np.float64,
     ) -> TrackResult:
         """Track plots over time.
 
@@ -87,6 +88,10 @@ class LaneTracker(ABC):
         threads : int, optional
             Threads that share the tracks of a large job; all processors unless given. The numbers
             do not depend on it.
+        dtype : dtype
+            np.float64, or np.float32 for half the memory and more speed: plots and results are
+            then rounded to 7 digits, and so is every operation, so give coordinates from an origin
+            nearby. Such a run is always compiled.
 
         Returns
         -------
@@ -97,12 +102,13 @@ class LaneTracker(ABC):
         DataError
             If a plot is infinite, or times are not finite and increasing; says where.
         ValueError
-            If shapes do not fit, the scheduler needs `sigma`, a name in `keep` is unknown, or
-            `threads` is less than 1.
+            If shapes do not fit, the scheduler needs `sigma`, a name in `keep` is unknown,
+            `threads` is less than 1, `dtype` is another, or the tracker works with numbers that
+            are too large or too small for it.
         """
         wanted = _check_keep(keep)
         _check_threads(threads)
-        plots = np.asarray(z, dtype=np.float64)
+        plots = _as_plots(z, dtype)
         times = np.asarray(t, dtype=np.float64)
         layout = _Layout.of(plots, self.coupled)
         dts = _time_steps(times, plots.shape, state)
@@ -235,13 +241,14 @@ class LaneTracker(ABC):
             raise ValueError(
                 f"sigma: shape {values.shape} does not broadcast with the plots' {plots.shape}"
             ) from None
-        bad = ~(np.isfinite(full) & (full > 0)) & ~np.isnan(plots)
-        if bad.any():
-            place = tuple(int(k) for k in np.argwhere(bad)[0])
-            raise ValueError(
-                f"sigma must be positive and finite where there is a plot; at index {place} it is "
-                f"{full[place]:g}"
-            )
+        fits = np.isfinite(values) & (values > 0)
+        if not fits.all():
+            bad = ~np.broadcast_to(fits, plots.shape) & ~np.isnan(plots)
+            for place in np.argwhere(bad)[:1].tolist():
+                raise ValueError(
+                    "sigma must be positive and finite where there is a plot; at index "
+                    f"{tuple(place)} it is {full[tuple(place)]:g}"
+                )
         return values.reshape((1,) * (plots.ndim - values.ndim) + values.shape)
 
 
@@ -321,12 +328,13 @@ class _Layout:
     def lanes(self) -> int:
         return math.prod(self.shape[1:]) // self.lane_axes
 
-    def to_lanes(self, values: Array) -> Array:
+    def to_lanes(self, values: NDArray[Any]) -> NDArray[Any]:
         """Array that broadcasts with the plots, to one that does with (n_steps, lanes, axes)."""
-        if values.size == 1:
-            return values.reshape(1, 1, 1)
-        full = values if values.shape == self.shape else np.broadcast_to(values, self.shape)
-        return full.reshape(self.shape[0], self.lanes, self.lane_axes)
+        if math.prod(values.shape[1:]) == 1:
+            return values.reshape(-1, 1, 1)
+        # What is the same at all times is not repeated.
+        full = np.broadcast_to(values, (len(values), *self.shape[1:]))
+        return full.reshape(len(values), self.lanes, self.lane_axes)
 
     def times_to_lanes(self, dts: Array) -> Array:
         if dts.ndim == 1:
@@ -350,6 +358,15 @@ def _check_keep(keep: Sequence[str] | None) -> tuple[str, ...]:
         if name not in KEPT:
             raise ValueError(f"keep: unknown {name!r}; out of {', '.join(KEPT)}")
     return tuple(name for name in KEPT if name in names)
+
+
+def _as_plots(z: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
+    kind = np.dtype(dtype)
+    if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
+        raise ValueError(f"dtype must be float64 or float32, got {kind}")
+    # What is too large for it is found as an infinite plot.
+    with np.errstate(over="ignore"):
+        return np.asarray(z, dtype=kind)
 
 
 def _check_threads(threads: int | None) -> None:

@@ -3,23 +3,42 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import sys
 import uuid
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
 from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
-__all__ = ["compiled", "fingerprint"]
+__all__ = ["compiled", "entry_point", "fingerprint", "own_numbers", "use_wide_vectors"]
 
 _LONG_TUPLE = 16
 #: How functions are compiled and named here; what another scheme left on disk is not for us.
-_SCHEME = 2
+_SCHEME = 3
 
 
 class _UnknownContentError(Exception):
     """A value whose content cannot be told."""
+
+
+def use_wide_vectors() -> None:
+    """Let the loops of the compiled function that calls this use the widest registers there are.
+
+    Compilers shun those of 512 bits, since other code on the processor may slow down for them; a
+    batch of tracks gains more. In plain Python, and with narrower registers, it does nothing.
+    """
+
+
+def own_numbers(count: int) -> Any:
+    """Room for some numbers of the calling function's own, filled before it is read.
+
+    A list; compiled, registers: `count` must be fixed when the function is made.
+    """
+    return [0.0] * count
 
 
 def compiled(
@@ -47,42 +66,157 @@ def compiled(
     """
     import numba
 
-    known: dict[int, Any] = {}
-
-    def prepare(value: Any) -> Any:
-        if isinstance(value, FunctionType):
-            if id(value) not in known:
-                # Helpers are inlined whatever their size: a call keeps a loop from vectorising.
-                inline = value is not function
-                free = nogil and not inline
-                jit = numba.njit(error_model="numpy", forceinline=inline, nogil=free)
-                known[id(value)] = jit(rebuild(value))
-            return known[id(value)]
-        if isinstance(value, tuple) and len(value) > _LONG_TUPLE:
-            return np.array(value, dtype=np.float64)
-        return value
-
-    def rebuild(original: FunctionType) -> FunctionType:
-        names = _names(original.__code__)
-        scope = {n: prepare(v) for n, v in original.__globals__.items() if n in names}
-        scope["__builtins__"] = original.__globals__.get("__builtins__", __builtins__)
-        scope["__name__"] = original.__globals__.get("__name__", __name__)
-        cells = tuple(CellType(prepare(c.cell_contents)) for c in original.__closure__ or ())
-        rebuilt = FunctionType(
-            original.__code__, scope, original.__name__, original.__defaults__, cells
-        )
-        # Two functions of one name, one compiled here and one read from disk, would count as one.
-        known_as = digest if original is function else None
-        content = known_as or fingerprint(original) or uuid.uuid4().hex
-        rebuilt.__qualname__ = f"{original.__name__}_{content[:24]}"
-        return rebuilt
-
-    dispatcher: Any = prepare(function)
-    if digest is not None:
-        from fuzzytrack.trackers.kernel_cache import KernelCache
-
-        dispatcher._cache = KernelCache(dispatcher.py_func, digest)
+    rebuilt = _rebuilt(_Content.of(function, np.float64, digest))
+    dispatcher: Any = numba.njit(rebuilt, error_model="numpy", nogil=nogil)
+    dispatcher._cache = _kept(rebuilt, digest, dispatcher._cache)
     return dispatcher  # type: ignore[no-any-return]
+
+
+def entry_point(function: Callable[..., Any], arguments: str, dtype: type = np.float64) -> Any:
+    """Compile a plain Python function, likewise, for calls from compiled code by its address.
+
+    Parameters
+    ----------
+    function : callable
+        As for `compiled`. It does not fail, or nobody hears of it.
+    arguments : str
+        Types of its result and arguments, a letter each: ``v`` nothing, ``i`` integer, ``x``
+        number, ``p`` pointer to numbers, which is indexed like an array.
+    dtype : type
+        The numbers are np.float64 or np.float32. With the latter the numbers in the source are
+        rounded too, or everything would be computed in double precision all the same.
+
+    Returns
+    -------
+    object
+        Its ``address`` is valid as long as the object lives. It is kept on disk if its content can
+        be told.
+    """
+    import numba
+    from numba.core.ccallback import CFunc
+
+    types: Any = numba.types
+    number = numba.from_dtype(np.dtype(dtype))
+    kinds = {"v": types.void, "i": types.intp, "x": number, "p": types.CPointer(number)}
+    result, *given = (kinds[letter] for letter in arguments)
+    digest = fingerprint(function)
+    rebuilt = _rebuilt(_Content.of(function, dtype, digest))
+    made: Any = CFunc(rebuilt, (tuple(given), result), {}, {"error_model": "numpy"})
+    made._cache = _kept(rebuilt, digest, made._cache)
+    made.compile()
+    return made
+
+
+def _kept(function: FunctionType, digest: str | None, otherwise: Any) -> Any:
+    """Cache on disk for a function that is known by a digest."""
+    if digest is None:
+        return otherwise
+    from fuzzytrack.trackers.kernel_cache import KernelCache
+
+    return KernelCache(function, digest)
+
+
+@dataclass(frozen=True)
+class _Content:
+    """A function, equal to any that does the same, computed in numbers of some type."""
+
+    digest: str
+    dtype: type
+    function: FunctionType = field(compare=False)
+
+    @classmethod
+    def of(cls, function: Any, dtype: type, digest: str | None = None) -> _Content:
+        # What cannot be told is equal to itself alone.
+        return cls(digest or fingerprint(function) or uuid.uuid4().hex, dtype, function)
+
+
+def _rebuilt(content: _Content) -> FunctionType:
+    """The function with its helpers compiled and its constants as compiled code has them."""
+    original, dtype = content.function, content.dtype
+    names = _names(original.__code__)
+    scope = {n: _prepared(v, dtype) for n, v in original.__globals__.items() if n in names}
+    scope["__builtins__"] = original.__globals__.get("__builtins__", __builtins__)
+    scope["__name__"] = original.__globals__.get("__name__", __name__)
+    cells = tuple(
+        CellType(_prepared(cell.cell_contents, dtype)) for cell in original.__closure__ or ()
+    )
+    code = original.__code__
+    if dtype is not np.float64:
+        code = code.replace(co_consts=tuple(_prepared(c, dtype) for c in code.co_consts))
+    rebuilt = FunctionType(code, scope, original.__name__, original.__defaults__, cells)
+    # Two functions of one name, one compiled here and one read from disk, would count as one.
+    kind = np.dtype(dtype).char
+    rebuilt.__qualname__ = f"{original.__name__}_{kind}{content.digest[:24]}"
+    return rebuilt
+
+
+def _prepared(value: Any, dtype: type) -> Any:
+    if value is use_wide_vectors:
+        return _wide_vectors()
+    if value is own_numbers:
+        return _own_numbers(dtype)
+    if isinstance(value, FunctionType):
+        return _helper(_Content.of(value, dtype))
+    if isinstance(value, tuple) and len(value) > _LONG_TUPLE:
+        return np.array(value, dtype=dtype)
+    if dtype is np.float64:
+        return value
+    if isinstance(value, tuple):
+        return tuple(_prepared(item, dtype) for item in value)
+    return _rounded(value, dtype) if isinstance(value, float) else value
+
+
+def _rounded(value: float, dtype: type) -> Any:
+    with np.errstate(over="ignore", under="ignore"):
+        number = dtype(value)
+    if math.isfinite(value) and (not np.isfinite(number) or (number == 0.0) != (value == 0.0)):
+        raise ValueError(f"dtype: this tracker works with {value:g}, which {np.dtype(dtype)} lacks")
+    return number
+
+
+@lru_cache(maxsize=512)
+def _helper(content: _Content) -> Any:
+    import numba
+
+    # Helpers are inlined whatever their size: a call keeps a loop from vectorising.
+    return numba.njit(_rebuilt(content), error_model="numpy", forceinline=True)
+
+
+@lru_cache(maxsize=1)
+def _wide_vectors() -> Any:
+    """`use_wide_vectors` for the compiler."""
+    from numba import types
+    from numba.extending import intrinsic
+
+    def declare(typing_context: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            # llvmlite lists the attributes that it lets through; this one LLVM has only as a text.
+            set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+            return context.get_dummy_value()
+
+        return types.void(), generate
+
+    return intrinsic(declare)
+
+
+@lru_cache(maxsize=2)
+def _own_numbers(dtype: type) -> Any:
+    """`own_numbers` for the compiler."""
+    import numba
+    from numba.core import cgutils
+    from numba.extending import intrinsic
+
+    types: Any = numba.types
+    alloca: Any = cgutils.alloca_once
+    number = numba.from_dtype(np.dtype(dtype))
+
+    def declare(typing_context: Any, count: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return alloca(builder, context.get_data_type(number), size=count.literal_value)
+
+        return types.CPointer(number)(count), generate
+
+    return intrinsic(prefer_literal=True)(declare)
 
 
 def fingerprint(function: Callable[..., Any]) -> str | None:
@@ -117,6 +251,8 @@ def _add(digest: Any, value: Any, seen: dict[int, int]) -> None:
         # With its length, so that no two sequences of values look the same.
         digest.update(f"{kind} {len(content)}:".encode() + content)
 
+    # Of an intrinsic of Numba, what it is made by.
+    value = getattr(value, "_defn", value)
     if isinstance(value, FunctionType):
         if id(value) in seen:
             take("again", str(seen[id(value)]).encode())

@@ -1,38 +1,32 @@
-"""The compiled passage of a job: all its lanes, block by block, over all time steps."""
+"""The compiled passage of a job: all its lanes, block by block, over all time steps.
+
+It is the same for all trackers and compiled once: what a tracker does in a step it is given as the
+address of compiled code. Importing this needs Numba.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from fuzzytrack.trackers.calls import call_steady, call_step
+from fuzzytrack.trackers.native import compiled, fingerprint, use_wide_vectors
+from fuzzytrack.trackers.rows import BLOCK, OUTPUTS, Rows
 
-from fuzzytrack.trackers.rows import Rows
-
-__all__ = ["BLOCK", "OUTPUTS", "aligned", "hop_function", "run_function"]
-
-#: Lanes a block, and numbers between the rows of its buffer. A few rows of it stay clear of one
-#: another in the cache, where distances count by the remainder of 4,096 bytes.
-BLOCK = 248
-
-#: What a passage can write down, in this order.
-OUTPUTS = (
-    "predicted", "filtered", "velocity", "acceleration", "innovation", "alpha", "beta", "gamma"
-)  # fmt: skip
+__all__ = ["compiled_hop", "compiled_run", "layout"]
 
 
-def aligned(count: int) -> NDArray[np.float64]:
-    """Zeros that begin with a line of the cache."""
-    numbers = np.zeros(count + 8)
-    skipped = -(numbers.ctypes.data // 8) % 8
-    return numbers[skipped : skipped + count]
+def layout(rows: Rows) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """What the passage has to know of the rows of a lane: sizes and places, and of each output."""
+    places = (rows.n_axes, rows.state, rows.kept, rows.plot, rows.sigma, rows.dt, rows.plots)
+    return places, tuple(rows.output(name) for name in OUTPUTS)
 
 
 # Views first: the compiler sees that their indices cannot be negative, and copies in one go.
 def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int) -> None:
-    into = b[row : row + count]
+    into = b[row * BLOCK : row * BLOCK + count]
     if stride == 0:
         value = source[start]
         for i in range(count):
@@ -43,142 +37,109 @@ def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int)
             into[i] = out_of[i * stride]
 
 
-def _copy_plots(b: Any, row: int, source: Any, start: int, stride: int, count: int) -> int:
-    """Copy plots in; how many are infinite."""
-    into, out_of, infinite = b[row : row + count], source[start:], 0
-    for i in range(count):
-        z = out_of[i * stride]
-        infinite += (z == math.inf) | (z == -math.inf)
-        into[i] = z
-    return infinite
+def _infinite(numbers: Any, start: int, count: int) -> int:
+    """How many of some numbers are infinite."""
+    found = 0
+    for z in numbers[start : start + count]:
+        found += (z == math.inf) | (z == -math.inf)
+    return found
 
 
 def _copy_out(b: Any, row: int, target: Any, start: int, stride: int, count: int) -> None:
-    out_of, into = b[row : row + count], target[start:]
+    out_of, into = b[row * BLOCK : row * BLOCK + count], target[start:]
     for i in range(count):
         into[i * stride] = out_of[i]
 
 
 def _all_have(b: Any, row: int, count: int, least: float) -> bool:
     lacking = 0
-    for value in b[row : row + count]:
+    for value in b[row * BLOCK : row * BLOCK + count]:
         lacking += value < least
     return lacking == 0
 
 
-def _never(b: Any, count: int, dt: float) -> None:
-    return
+def _run(
+    step: int, steady: int, results: bool, places: Any, output_rows: Any, b: Any, unwanted: Any,
+    n_steps: int, lanes: int, first: int, last: int, plots: Any, dts: Any, sigmas: Any,
+    dt_strides: Any, sigma_strides: Any, states: Any, outputs: Any,
+) -> int:  # fmt: skip
+    """Run the lanes from `first` to before `last` of a job over all time steps.
 
-
-def run_function(
-    step: Callable[[Any, int], None],
-    steady: Callable[[Any, int, float], None] | None,
-    gains: bool,
-    rows: Rows,
-    prepare: Callable[[Callable[..., Any]], Callable[..., Any]] = lambda function: function,
-) -> Callable[..., int]:
-    """Function that runs the lanes from `first` to before `last` of a job over all time steps.
-
-    Parameters
-    ----------
-    step, steady : callable
-        See `fuzzytrack.trackers.runner.Recursion`, for the stride `BLOCK`.
-    gains : bool
-        Whether `steady` writes the gains down. The last step does, for the state.
-    rows : Rows
-    prepare : callable
-        Done to the functions that it calls; they are compiled one by one, lest they be inlined into
-        each other at every use.
+    `steady` is 0 if there is none, and leaves results in the buffer or not; the last step does, for
+    the state. How many plots were infinite is returned.
     """
-    n_axes, state, kept, block = rows.n_axes, rows.state, rows.kept, BLOCK
-    position_row, velocity_row, acceleration_row = rows.position, rows.velocity, rows.acceleration
-    predicted_row, innovation_row, gains_row = rows.predicted, rows.innovation, rows.gains
-    plot_row, sigma_row, dt_row, plots_row = rows.plot, rows.sigma, rows.dt, rows.plots
-    can_be_steady = steady is not None
-    step, go_on = prepare(step), prepare(_never if steady is None else steady)
-    copy_in, copy_out = prepare(_copy_in), prepare(_copy_out)
-    copy_plots, all_have = prepare(_copy_plots), prepare(_all_have)
-
-    def write(b: Any, row: int, target: Any, start: int, stride: int, count: int) -> None:
-        """Write a row down, if it is wanted."""
-        if len(target):
-            copy_out(b, row * block, target, start, stride, count)
-
-    def run(
-        b: Any, n_steps: int, lanes: int, first: int, last: int, plots: Any, dts: Any, sigmas: Any,
-        dt_strides: Any, sigma_strides: Any, states: Any, outputs: Any,
-    ) -> int:  # fmt: skip
-        predicted, filtered, velocity, acceleration, innovation, alpha, beta, gamma = outputs
-        infinite = 0
-        for begin in range(first, last, block):
-            count = min(block, last - begin)
-            for r in range(state):
-                copy_in(b, r * block, states, r * lanes + begin, 1, count)
-            settled = False
-            for k in range(n_steps):
+    n_axes, state, kept, plot_row, sigma_row, dt_row, plots_row = places
+    use_wide_vectors()
+    predicted, infinite = outputs[0], 0
+    for begin in range(first, last, BLOCK):
+        count = min(BLOCK, last - begin)
+        for r in range(state):
+            _copy_in(b, r, states, r * lanes + begin, 1, count)
+        settled = False
+        for k in range(n_steps):
+            if (k == 0) | (sigma_strides[0] > 0):
+                start = k * sigma_strides[0] + begin * sigma_strides[1]
                 for j in range(n_axes):
-                    start = (k * lanes + begin) * n_axes + j
-                    infinite += copy_plots(b, (plot_row + j) * block, plots, start, n_axes, count)
-                    if (k == 0) | (sigma_strides[0] > 0):
-                        start = k * sigma_strides[0] + begin * sigma_strides[1]
-                        start += j * sigma_strides[2]
-                        copy_in(b, (sigma_row + j) * block, sigmas, start, sigma_strides[1], count)
-                start = k * dt_strides[0] + begin * dt_strides[1]
-                if settled & (gains | (k < n_steps - 1)):
-                    go_on(b, count, dts[start])
-                else:
-                    copy_in(b, dt_row * block, dts, start, dt_strides[1], count)
-                    step(b, count)
-                    settled = can_be_steady & (dt_strides[1] == 0)
-                    settled = settled and all_have(b, plots_row * block, count, 2.0)
-                start = k * lanes + begin
+                    place = start + j * sigma_strides[2]
+                    _copy_in(b, sigma_row + j, sigmas, place, sigma_strides[1], count)
+            at, start = (k * lanes + begin) * n_axes, k * dt_strides[0] + begin * dt_strides[1]
+            infinite += _infinite(plots, at, count * n_axes)
+            straight = settled & (results | (k < n_steps - 1))
+            if straight:
+                target, place = (predicted, at) if len(predicted) else (unwanted, 0)
+                call_steady(steady, b, count, dts[start], plots, at, target, place)
+            else:
                 for j in range(n_axes):
-                    at = start * n_axes + j
-                    write(b, predicted_row + j, predicted, at, n_axes, count)
-                    write(b, position_row + j, filtered, at, n_axes, count)
-                    write(b, velocity_row + j, velocity, at, n_axes, count)
-                    write(b, acceleration_row + j, acceleration, at, n_axes, count)
-                    write(b, innovation_row + j, innovation, at, n_axes, count)
-                write(b, gains_row, alpha, start, 1, count)
-                write(b, gains_row + 1, beta, start, 1, count)
-                write(b, gains_row + 2, gamma, start, 1, count)
-            for r in range(kept):
-                copy_out(b, r * block, states, r * lanes + begin, 1, count)
-        return infinite
+                    _copy_in(b, plot_row + j, plots, at + j, n_axes, count)
+                _copy_in(b, dt_row, dts, start, dt_strides[1], count)
+                call_step(step, b, count)
+                settled = (steady != 0) & (dt_strides[1] == 0)
+                settled = settled and _all_have(b, plots_row, count, 2.0)
+            # Gains there is one a lane, of the others one an axis.
+            for o in range(1 if straight else 0, len(outputs)):
+                if len(outputs[o]):
+                    width = n_axes if o < len(outputs) - 3 else 1
+                    for j in range(width):
+                        place = (k * lanes + begin) * width + j
+                        _copy_out(b, output_rows[o] + j, outputs[o], place, width, count)
+        for r in range(kept):
+            _copy_out(b, r, states, r * lanes + begin, 1, count)
+    return infinite
 
-    return run
 
+def _hop(
+    step: int, n_axes: int, state: int, kept: int, plot_row: int, b: Any, lanes: int, old: Any,
+    plots: Any, dt: float, sigma: float, new: Any,
+) -> int:  # fmt: skip
+    """One step of all lanes, with one time step and one sigma for all.
 
-def hop_function(
-    step: Callable[[Any, int], None],
-    rows: Rows,
-    prepare: Callable[[Callable[..., Any]], Callable[..., Any]] = lambda function: function,
-) -> Callable[..., int]:
-    """Function that does one step of all lanes, with one time step and one sigma for all.
-
-    It is what `run_function` makes, cut down to what a track that comes plot by plot needs.
+    It is `_run` cut down to what a track that comes plot by plot needs.
     """
-    n_axes, state, kept, block = rows.n_axes, rows.state, rows.kept, BLOCK
-    plot_row, sigma_row, dt_row = rows.plot * block, rows.sigma * block, rows.dt * block
-    step, copy_plots = prepare(step), prepare(_copy_plots)
-    copy_in, copy_out = prepare(_copy_in), prepare(_copy_out)
-
-    def hop(b: Any, lanes: int, old: Any, plots: Any, dt: float, sigma: float, new: Any) -> int:
-        before, after, infinite = old.reshape(-1), new.reshape(-1), 0
-        for begin in range(0, lanes, block):
-            count = min(block, lanes - begin)
-            for r in range(state):
-                copy_in(b, r * block, before, r * lanes + begin, 1, count)
-            for j in range(n_axes):
-                row, start = plot_row + j * block, begin * n_axes + j
-                infinite += copy_plots(b, row, plots, start, n_axes, count)
-                for i in range(count):
-                    b[sigma_row + j * block + i] = sigma
+    sigma_row, dt_row = plot_row + n_axes, plot_row + 2 * n_axes
+    before, after = old.reshape(-1), new.reshape(-1)
+    for begin in range(0, lanes, BLOCK):
+        count = min(BLOCK, lanes - begin)
+        for r in range(state):
+            _copy_in(b, r, before, r * lanes + begin, 1, count)
+        for j in range(n_axes):
+            _copy_in(b, plot_row + j, plots, begin * n_axes + j, n_axes, count)
             for i in range(count):
-                b[dt_row + i] = dt
-            step(b, count)
-            for r in range(kept):
-                copy_out(b, r * block, after, r * lanes + begin, 1, count)
-        return infinite
+                b[(sigma_row + j) * BLOCK + i] = sigma
+        for i in range(count):
+            b[dt_row * BLOCK + i] = dt
+        call_step(step, b, count)
+        for r in range(kept):
+            _copy_out(b, r, after, r * lanes + begin, 1, count)
+    return _infinite(plots, 0, lanes * n_axes)
 
-    return hop
+
+@cache
+def compiled_run() -> Callable[..., int]:
+    """`_run`, compiled; other threads may run meanwhile."""
+    return compiled(_run, fingerprint(_run), nogil=True)
+
+
+@cache
+def compiled_hop() -> Callable[..., int]:
+    """`_hop`, compiled; for the one type of arguments that it is first called with."""
+    return compiled(_hop, fingerprint(_hop))

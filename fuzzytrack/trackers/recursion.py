@@ -20,6 +20,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.trackers.native import own_numbers, use_wide_vectors
 from fuzzytrack.trackers.rows import Rows
 
 __all__ = ["steady_function", "step_function"]
@@ -72,47 +73,47 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
     """
     n_axes = rows.n_axes
     kernel = scheduler.kernel(n_axes)
-    plot_row, last_row, sigma_row, innovation_row = (
-        row * stride for row in (rows.plot, rows.last_plot, rows.sigma, rows.innovation)
-    )
+    last_row, sigma_row = rows.last_plot * stride, rows.sigma * stride
     missed_sigma = math.inf if scheduler.sees_every_step else 1.0
     if not scheduler.coupled:
 
         def alone(
-            b: Any, i: int, dt: float, update: bool, told: bool, memory: Any
+            b: Any, i: int, own: Any, dt: float, update: bool, told: bool, memory: Any
         ) -> tuple[float, float, float, float, tuple[float, ...]]:
-            change = b[plot_row + i] - b[last_row + i]
+            change = own[0] - b[last_row + i]
             sigma = b[sigma_row + i]
             return kernel(
-                b[innovation_row + i], change if update else 0.0, dt,
-                sigma if told else missed_sigma, memory,
-            )  # fmt: skip
+                own[2], change if update else 0.0, dt, sigma if told else missed_sigma, memory
+            )
 
         return alone
 
-    axes = _gather(n_axes, stride)
-    change_row, noise_row = rows.change * stride, rows.noise * stride
+    axes = _gather(n_axes, 1)
 
     def together(
-        b: Any, i: int, dt: float, update: bool, told: bool, memory: Any
+        b: Any, i: int, own: Any, dt: float, update: bool, told: bool, memory: Any
     ) -> tuple[float, float, float, float, tuple[float, ...]]:
         for j in range(n_axes):
             at = j * stride + i
-            change = b[plot_row + at] - b[last_row + at]
-            b[change_row + at] = change if update else 0.0
+            change = own[j] - b[last_row + at]
+            own[3 * n_axes + j] = change if update else 0.0
             sigma = b[sigma_row + at]
-            b[noise_row + at] = sigma if told else missed_sigma
+            own[4 * n_axes + j] = sigma if told else missed_sigma
         return kernel(
-            axes(b, innovation_row + i), axes(b, change_row + i), dt, axes(b, noise_row + i), memory
+            axes(own, 2 * n_axes), axes(own, 3 * n_axes), dt, axes(own, 4 * n_axes), memory
         )
 
     return together
 
 
 def _advance(
-    scheduler: GainScheduler, rows: Rows, two_point: bool, stride: int, settled: bool, gains: bool
-) -> Callable[[Any, int, float, float], None]:
-    """Function that takes lane `i` a step of length `dt` on, after so many plots."""
+    scheduler: GainScheduler, rows: Rows, two_point: bool, stride: int, settled: bool, results: bool
+) -> Callable[[Any, int, Any, float, float], None]:
+    """Function that takes lane `i` a step of length `dt` on, after so many plots.
+
+    `own` are numbers of the lane for this step: plots, predictions, innovations, and room for what
+    a coupled kernel is given, each of all axes.
+    """
     n_axes, n_memory = rows.n_axes, rows.n_memory
     call = _caller(scheduler, rows, stride)
     remembered, remember = _gather(n_memory, stride), _scatter(n_memory, stride)
@@ -124,17 +125,17 @@ def _advance(
             rows.memory,
         )
     )  # fmt: skip
-    prediction_row, innovation_row, gains_row, plot_row = (
-        row * stride for row in (rows.predicted, rows.innovation, rows.gains, rows.plot)
+    prediction_row, innovation_row, gains_row = (
+        row * stride for row in (rows.predicted, rows.innovation, rows.gains)
     )
     first_count = 1.0 if two_point else 2.0
     every_step = scheduler.sees_every_step
 
-    def advance(b: Any, i: int, dt: float, plots: float) -> None:
+    def advance(b: Any, i: int, own: Any, dt: float, plots: float) -> None:
         rate = 1.0 / dt
         seen = True
         for j in range(n_axes):
-            z = b[plot_row + j * stride + i]
+            z = own[j]
             seen = seen & (z == z)
         running = plots >= 2.0
         update = seen & running
@@ -145,17 +146,17 @@ def _advance(
         for j in range(n_axes):
             at = j * stride + i
             prediction = b[x_row + at] + b[v_row + at] * dt + b[a_row + at] * (0.5 * dt * dt)
-            b[prediction_row + at] = prediction
-            b[innovation_row + at] = b[plot_row + at] - prediction if update else 0.0
+            own[n_axes + j] = prediction
+            own[2 * n_axes + j] = own[j] - prediction if update else 0.0
 
         memory = remembered(b, memory_row + i)
-        alpha, beta, gamma, phi, memory = call(b, i, dt, update, told, memory)
+        alpha, beta, gamma, phi, memory = call(b, i, own, dt, update, told, memory)
         gap = b[gap_row + i] + dt
 
         for j in range(n_axes):
             at = j * stride + i
-            z, last, v, a = b[plot_row + at], b[last_row + at], b[v_row + at], b[a_row + at]
-            prediction, e = b[prediction_row + at], b[innovation_row + at]
+            last, v, a = b[last_row + at], b[v_row + at], b[a_row + at]
+            z, prediction, e = own[j], own[n_axes + j], own[2 * n_axes + j]
             moved = v + a * dt
             start = (z - last) / gap if plots == 1.0 else 0.0
             x_new = prediction + alpha * e if running else z
@@ -165,8 +166,9 @@ def _advance(
             b[v_row + at] = v_new if seen else moved
             b[a_row + at] = a_new if seen else a
             b[last_row + at] = z if seen else last
-            b[prediction_row + at] = prediction if running else nan
-            b[innovation_row + at] = e if update else nan
+            if results:
+                b[prediction_row + at] = prediction if running else nan
+                b[innovation_row + at] = e if update else nan
 
         remember(b, memory_row + i, memory, kept)
         if not settled:
@@ -174,12 +176,25 @@ def _advance(
             counted = counted if counted < 2.0 else 2.0
             b[plots_row + i] = counted if seen else plots
             b[gap_row + i] = 0.0 if seen | running else gap
-        if gains:
+        if results:
             b[gains_row + i] = alpha if update else nan
             b[gains_row + stride + i] = beta if update else nan
             b[gains_row + 2 * stride + i] = gamma if update else nan
 
     return advance
+
+
+# The loops over axes stand in functions of their own: a variable that outlives a lane makes the
+# compiler take the first lane of a block apart from the others.
+def _take(own: Any, n_axes: int, source: Any, start: int, stride: int) -> None:
+    for j in range(n_axes):
+        own[j] = source[start + j * stride]
+
+
+def _give(own: Any, n_axes: int, target: Any, start: int) -> None:
+    """Hand the predictions out."""
+    for j in range(n_axes):
+        target[start + j] = own[n_axes + j]
 
 
 def step_function(
@@ -197,37 +212,53 @@ def step_function(
     stride : int
         Numbers between rows.
     """
-    advance = _advance(scheduler, rows, two_point, stride, settled=False, gains=True)
-    plots_row, dt_row = rows.plots * stride, rows.dt * stride
+    advance = _advance(scheduler, rows, two_point, stride, settled=False, results=True)
+    n_axes, size = rows.n_axes, 5 * rows.n_axes
+    plot_row, plots_row, dt_row = (row * stride for row in (rows.plot, rows.plots, rows.dt))
 
     def step(b: Any, count: int) -> None:
+        use_wide_vectors()
+        own = own_numbers(size)
         # The compiler sees that no row runs into the next, and works on several lanes at once.
         for i in range(min(count, stride)):
+            _take(own, n_axes, b, plot_row + i, stride)
             dt = b[dt_row + i]
             # The first step of a track has no length; its value is not used.
-            advance(b, i, dt if dt > 0.0 else 1.0, b[plots_row + i])
+            advance(b, i, own, dt if dt > 0.0 else 1.0, b[plots_row + i])
 
     return step
 
 
 def steady_function(
-    scheduler: GainScheduler, rows: Rows, stride: int, gains: bool
-) -> Callable[[Any, int, float], None]:
+    scheduler: GainScheduler, rows: Rows, stride: int, results: bool
+) -> Callable[[Any, int, float, Any, Any], None]:
     """As `step_function`, for lanes that have all started and have their time step in common.
 
     What is known beforehand drops out when it is compiled: divisions by the time step, starts.
+    Plots come straight from the job, and predictions go straight into the result.
 
     Parameters
     ----------
     scheduler, rows, stride
         As there.
-    gains : bool
-        Whether to write down the gains.
-    """
-    advance = _advance(scheduler, rows, True, stride, settled=True, gains=gains)
+    results : bool
+        Whether to leave the results in the buffer, too.
 
-    def steady(b: Any, count: int, dt: float) -> None:
+    Returns
+    -------
+    callable
+        ``steady(buffer, count, dt, plots, predicted)``. The last two have the axes of a lane side
+        by side.
+    """
+    advance = _advance(scheduler, rows, True, stride, settled=True, results=results)
+    n_axes, size = rows.n_axes, 5 * rows.n_axes
+
+    def steady(b: Any, count: int, dt: float, plots: Any, predicted: Any) -> None:
+        use_wide_vectors()
+        own = own_numbers(size)
         for i in range(min(count, stride)):
-            advance(b, i, dt, 2.0)
+            _take(own, n_axes, plots, i * n_axes, 1)
+            advance(b, i, own, dt, 2.0)
+            _give(own, n_axes, predicted, i * n_axes)
 
     return steady

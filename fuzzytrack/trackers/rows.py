@@ -1,10 +1,24 @@
-"""Layout of a lane's numbers."""
+"""Layout of a lane's numbers, and of a block of lanes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-__all__ = ["Rows"]
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["BLOCK", "OUTPUTS", "Rows", "aligned"]
+
+#: Lanes a block, and numbers between the rows of its buffer: whole vectors of 64 bytes, single
+#: precision included. A few rows of it stay clear of one another in the cache, where distances
+#: count by the remainder of 4,096 bytes.
+BLOCK = 240
+
+#: What a run can write down, in this order.
+OUTPUTS = (
+    "predicted", "filtered", "velocity", "acceleration", "innovation", "alpha", "beta", "gamma"
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -114,3 +128,10 @@ class Rows:
         if name in ("alpha", "beta", "gamma"):
             return self.gains + ("alpha", "beta", "gamma").index(name)
         return int(getattr(self, "position" if name == "filtered" else name))
+
+
+def aligned(count: int, dtype: type = np.float64) -> NDArray[Any]:
+    """Zeros that begin with a line of the cache."""
+    numbers: NDArray[Any] = np.zeros(count + 16, dtype)
+    skipped = -(numbers.ctypes.data // numbers.itemsize) % (64 // numbers.itemsize)
+    return numbers[skipped : skipped + count]

@@ -6,15 +6,14 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzytrack.trackers.native import compiled, fingerprint
-from fuzzytrack.trackers.passage import BLOCK, OUTPUTS, aligned, hop_function, run_function
-from fuzzytrack.trackers.rows import Rows
+from fuzzytrack.trackers.native import entry_point
+from fuzzytrack.trackers.rows import BLOCK, OUTPUTS, Rows, aligned
 
 __all__ = ["InfinitePlotError", "Recursion", "Runner"]
 
@@ -52,15 +51,16 @@ class Recursion:
         results. It is run in plain Python over a list and compiled over an array, so it has loops,
         selects and numbers in it, and calls nothing else.
     steady : callable, optional
-        ``steady(stride, gains)`` makes the function ``f(buffer, count, dt)`` that does the same for
-        lanes that have all seen two plots and have their time step in common, only faster, and
-        writes the gains down or not.
+        ``steady(stride, results)`` makes the function ``f(buffer, count, dt, plots, predicted)``
+        that does the same for lanes that have all seen two plots and have their time step in
+        common, only faster, and leaves the results in the buffer or not. It reads the plots where
+        they lie, and writes the predictions where they are to be.
     """
 
     rows: Rows
     memory: tuple[float, ...]
     step: Callable[[int], Callable[[Any, int], None]]
-    steady: Callable[[int, bool], Callable[[Any, int, float], None]] | None = None
+    steady: Callable[[int, bool], Callable[[Any, int, float, Any, Any], None]] | None = None
 
 
 @dataclass(eq=False)
@@ -77,16 +77,14 @@ class Runner:
     horizon : int
         What `work` will be after the jobs that were announced.
     hop : callable or None
-        After `compile`, the function of `fuzzytrack.trackers.passage.hop_function`.
+        After `compile`, that of `fuzzytrack.trackers.passage`, from its argument `b` on.
     """
 
     recursion: Recursion
     work: int = 0
     horizon: int = 0
     hop: Callable[..., int] | None = field(default=None, init=False, repr=False)
-    _compiled_runs: dict[bool, Callable[..., int]] = field(
-        default_factory=dict, init=False, repr=False
-    )
+    _code: dict[tuple[object, type], Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def rows(self) -> Rows:
@@ -103,24 +101,25 @@ class Runner:
     def __call__(
         self,
         lanes: Array,
-        plots: Array,
+        plots: NDArray[Any],
         dts: Array,
         sigmas: Array,
         native: bool | None = None,
         keep: Sequence[str] = OUTPUTS,
         threads: int | None = None,
-    ) -> tuple[Array, dict[str, Array]]:
+    ) -> tuple[Array, dict[str, NDArray[Any]]]:
         """Run over time.
 
         Parameters
         ----------
         lanes : ndarray, shape (rows.kept, lanes)
         plots : ndarray, shape (n_steps, lanes, n_axes)
+            Of the type of number to work with.
         dts : ndarray, shape (n_steps, lanes or 1)
         sigmas : ndarray of three axes that broadcasts with `plots`
         native : bool, optional
             Whether to run compiled; unless given, once the jobs together are large enough to pay
-            for the compilation. The results are the same.
+            for the compilation, or in single precision. The results are the same.
         keep : sequence of str
             Outputs wanted.
         threads : int, optional
@@ -141,7 +140,8 @@ class Runner:
             If a plot is infinite.
         """
         if native is None:
-            native = max(self.horizon, self.work + plots.size) > COMPILE_ABOVE
+            large = max(self.horizon, self.work + plots.size) > COMPILE_ABOVE
+            native = large or plots.dtype != np.float64
         self.work += plots.size
         if native:
             return self._run_compiled(lanes, plots, dts, sigmas, keep, threads)
@@ -214,26 +214,34 @@ class Runner:
     def _run_compiled(
         self,
         lanes: Array,
-        plots: Array,
+        plots: NDArray[Any],
         dts: Array,
         sigmas: Array,
         keep: Sequence[str] = OUTPUTS,
         threads: int | None = None,
-    ) -> tuple[Array, dict[str, Array]]:
-        n_steps, count, _ = plots.shape
+    ) -> tuple[Array, dict[str, NDArray[Any]]]:
+        from fuzzytrack.trackers import passage
+
+        (n_steps, count, n_axes), dtype = plots.shape, plots.dtype.type
         after = np.array(lanes, order="C")
         shapes = {name: plots.shape[:2] if name in _GAINS else plots.shape for name in keep}
-        outputs = {name: np.empty(shape) for name, shape in shapes.items()}
-        inputs = [np.ascontiguousarray(array).reshape(-1) for array in (plots, dts, sigmas)]
+        outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
+        unwanted = np.empty(0, dtype)
+        inputs = [np.ascontiguousarray(array, dtype).reshape(-1) for array in (plots, dts, sigmas)]
         given = (
             *inputs, _strides(dts.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
             after.reshape(-1),
-            tuple(outputs[n].reshape(-1) if n in outputs else np.empty(0) for n in OUTPUTS),
+            tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
         )  # fmt: skip
-        run = self.compiled_run(bool({*keep} & {*_GAINS}))
+        results = bool({*keep} & {"innovation", *_GAINS})
+        step, steady = self.step_code(dtype), self.steady_code(results, dtype)
+        run, places = passage.compiled_run(), passage.layout(self.rows)
+        code = (step.address, 0 if steady is None else steady.address, results)
 
         def part(ends: tuple[int, int]) -> int:
-            return run(aligned(self.rows.total * BLOCK), n_steps, count, *ends, *given)
+            buffer = aligned(self.rows.total * BLOCK, dtype)
+            scratch = np.empty(n_axes * BLOCK, dtype)
+            return run(*code, *places, buffer, scratch, n_steps, count, *ends, *given)
 
         infinite = _in_parts(part, count, _threads(threads, plots.size))
         if infinite:
@@ -243,36 +251,42 @@ class Runner:
     @property
     def native(self) -> bool:
         """Whether there is compiled code."""
-        return bool(self._compiled_runs)
+        return bool(self._code)
 
     def compile(self) -> None:
-        """Compile now whatever is ever going to be."""
+        """Compile now whatever is ever going to be in double precision."""
         if self.hop is not None:
             return
-        n_axes, step = self.rows.n_axes, self.recursion.step(BLOCK)
+        from fuzzytrack.trackers import passage
+
+        n_axes = self.rows.n_axes
         lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
         for keep in (OUTPUTS, ()):
             self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], keep, 1)
-        digest = fingerprint(hop_function(step, self.rows))
-        hop = compiled(hop_function(step, self.rows, _compiled_once), digest)
+        hop: Any = passage.compiled_hop()
+        places = (self.step_code().address, n_axes, self.rows.state, self.rows.kept, self.rows.plot)
         buffer = aligned(self.rows.total * BLOCK)
-        hop(buffer, 1, lanes, one.reshape(-1), 1.0, 1.0, lanes)
+        hop(*places, buffer, 1, lanes, one.reshape(-1), 1.0, 1.0, lanes)
         # The one signature there is, without asking again which it is.
-        self.hop = hop.overloads[hop.signatures[0]].entry_point  # type: ignore[attr-defined]
+        self.hop = partial(hop.overloads[hop.signatures[0]].entry_point, *places)
 
-    def compiled_run(self, gains: bool) -> Callable[..., int]:
-        """Compiled function that runs lanes over time; with the gains of every step or not."""
-        if gains not in self._compiled_runs:
-            step, steady = self.recursion.step(BLOCK), self.recursion.steady
-            parts = (step, None if steady is None else steady(BLOCK, gains), gains, self.rows)
-            # What is kept on disk is known by all that it is made of, in plain Python.
-            digest = fingerprint(run_function(*parts))
-            function = run_function(*parts, prepare=_compiled_once)
-            self._compiled_runs[gains] = compiled(function, digest, nogil=True)
-        return self._compiled_runs[gains]
+    def step_code(self, dtype: type = np.float64) -> Any:
+        """Compiled step of the recursion, see `fuzzytrack.trackers.native.entry_point`."""
+        return self._compiled_once(("step", dtype), lambda: self.recursion.step(BLOCK), "vpi")
 
+    def steady_code(self, results: bool, dtype: type = np.float64) -> Any:
+        """Compiled steady function, or None; that with the results of every step or without."""
+        steady = self.recursion.steady
+        if steady is None:
+            return None
+        return self._compiled_once((results, dtype), lambda: steady(BLOCK, results), "vpixpp")
 
-_compiled_once = lru_cache(maxsize=64)(compiled)
+    def _compiled_once(
+        self, key: tuple[object, type], make: Callable[[], Callable[..., Any]], arguments: str
+    ) -> Any:
+        if key not in self._code:
+            self._code[key] = entry_point(make(), arguments, key[1])
+        return self._code[key]
 
 
 def _threads(wanted: int | None, coordinates: int) -> int:

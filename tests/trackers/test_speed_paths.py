@@ -2,8 +2,11 @@
 
 import pickle
 import platform
+import re
 import threading
 
+import llvmlite.binding
+import numba
 import numpy as np
 import pytest
 
@@ -11,9 +14,9 @@ import fuzzytrack as ft
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.trackers import runner as module
 from fuzzytrack.trackers.lanes import runner
-from fuzzytrack.trackers.native import compiled
-from fuzzytrack.trackers.passage import BLOCK, aligned
+from fuzzytrack.trackers.native import entry_point
 from fuzzytrack.trackers.result import KEPT
+from fuzzytrack.trackers.rows import BLOCK, aligned
 
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
 FUZZY = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
@@ -127,9 +130,13 @@ def test_threads_change_nothing(tracker):
 @pytest.mark.usefixtures("compile_always")
 def test_infinite_plots_are_found_in_compiled_batches():
     times, plots = recording()
-    plots[7, 250, 1] = -np.inf
-    with pytest.raises(ft.DataError, match=r"infinite plot at index \(7, 250, 1\)"):
-        FIXED.run(times, plots, threads=2)
+    for place in ((7, BLOCK + 2, 1), (0, 0, 0), (11, 17, 0)):
+        bad = plots.copy()
+        bad[place] = -np.inf
+        index = ", ".join(map(str, place))
+        for tracker in TRACKERS.values():
+            with pytest.raises(ft.DataError, match=rf"infinite plot at index \({index}\)"):
+                tracker.run(times, bad, threads=2)
 
 
 @pytest.mark.parametrize("name", TRACKERS)
@@ -193,14 +200,19 @@ def test_scratch_begins_with_a_line_of_the_cache():
 
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads x86 assembly")
 @pytest.mark.parametrize("name", ["fixed", "fuzzy"])
-def test_several_lanes_are_worked_on_at_once(name):
-    recursion = TRACKERS[name].recursion(1)
-    steady = compiled(recursion.steady(BLOCK, False))
-    steady(aligned(recursion.rows.total * BLOCK), BLOCK, 1.0)
-    (assembly,) = steady.inspect_asm().values()
-    assert "mulpd" in assembly
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_several_lanes_are_worked_on_at_once(name, dtype, monkeypatch, tmp_path):
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    code = entry_point(TRACKERS[name].recursion(1).steady(BLOCK, False), "vpixpp", dtype)
+    assembly = code._library.get_asm_str()
+    kind = "pd" if dtype is np.float64 else "ps"
+    assert f"mul{kind}" in assembly
     # The time step is common, so only what the rules divide by is left.
-    assert ("divpd" in assembly) == (name == "fuzzy")
+    assert (f"div{kind}" in assembly) == (name == "fuzzy")
+    if llvmlite.binding.get_host_cpu_features().get("avx512f"):
+        assert "zmm" in assembly
+    # Lanes begin where the block begins: none is taken apart.
+    assert re.search(r"\s[48]\(%r\w+,%r\w+,[48]\), %[yz]mm", assembly) is None
 
 
 def test_rules_that_share_out_every_point_are_ramps():
