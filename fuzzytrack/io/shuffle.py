@@ -25,7 +25,7 @@ def partition_of(id: str, partitions: int) -> int:
     return zlib.crc32(id.encode()) % partitions
 
 
-def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, partitions: int) -> None:
+def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, partitions: int) -> int:
     """Write a Parquet file in which the rows of each partition can be read by themselves.
 
     Parameters
@@ -39,6 +39,11 @@ def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, parti
     partitions : int
         Number of partitions.
 
+    Returns
+    -------
+    int
+        Number of rows.
+
     Notes
     -----
     Each piece becomes as many row groups as there are partitions, empty ones included: row group
@@ -49,9 +54,12 @@ def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, parti
     numbers = [(name, arrow.float64()) for name in (columns.time, *columns.axes)]
     schema = arrow.schema([(columns.id, arrow.string()), (_ROW, arrow.int64()), *numbers])
     with whole_file(path) as draft, column_writer(arrow, draft, schema, columns.id) as writer:
+        rows = 0
         for piece in pieces:
+            rows += len(piece.time)
             for table in _parts(arrow, schema, columns, piece, partitions):
                 writer.write_table(table)
+    return rows
 
 
 def _columns(n_axes: int) -> Columns:
@@ -110,7 +118,7 @@ def read_partition(
     arrow = import_pyarrow(str(path))
     columns = _columns(n_axes)
     with open(path, "rb") as stream:
-        source = arrow.parquet.ParquetFile(stream)
+        source = arrow.parquet.ParquetFile(stream, pre_buffer=False)
         groups: list[int] = []
         waiting = 0
 

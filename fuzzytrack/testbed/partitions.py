@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import TypeVar
@@ -20,7 +20,7 @@ from fuzzytrack.io.pieces import ROWS, read_pieces
 from fuzzytrack.io.shuffle import read_partition, write_partitions
 from fuzzytrack.testbed.streaming import OpenTracks
 from fuzzytrack.testbed.totals import Totals
-from fuzzytrack.trackers.lanes import LaneTracker
+from fuzzytrack.trackers.lanes import LaneTracker, announce
 
 __all__ = ["check_output_folder", "track_partitions"]
 
@@ -42,6 +42,7 @@ class _Job:
     partitions: int
     rows: int
     folder: str
+    expected: int = 0  # rows of a partition
 
     def sorted_file(self, number: int) -> Path:
         """Input file `number`, in partitions."""
@@ -122,18 +123,14 @@ def track_partitions(
             str(draft),
         )
         job.sorted_file(0).parent.mkdir()
-        count = len(files) + partitions
-        done = 0
-        for task, many in ((_sort_file, len(files)), (_track_partition, partitions)):
-            for part in _results(executor, task, job, many):
-                if part is not None:
-                    totals.merge(part)
-                done += 1
-                if progress is not None:
-                    progress(done / count)
+        steps = _Steps(len(files) + partitions, progress)
+        found = sum(steps.counted(_results(executor, _sort_file, job, len(files))))
+        job = replace(job, expected=found // partitions)
+        for part in steps.counted(_results(executor, _track_partition, job, partitions)):
+            totals.merge(part)
         if not totals.tracks:
             raise DataError(f"{files[0]}: holds no rows, only column names")
-        shutil.rmtree(job.sorted_file(0).parent)
+        _keep_only(draft, {job.part(number) for number in range(partitions)})
     return totals
 
 
@@ -159,6 +156,31 @@ def check_output_folder(path: str | os.PathLike[str]) -> Path:
     return target
 
 
+@dataclass
+class _Steps:
+    """Tells how much of the work is done."""
+
+    total: int
+    progress: Callable[[float], None] | None
+    done: int = 0
+
+    def counted(self, parts: Iterable[Part]) -> Iterator[Part]:
+        for part in parts:
+            self.done += 1
+            if self.progress is not None:
+                self.progress(self.done / self.total)
+            yield part
+
+
+def _keep_only(folder: Path, parts: set[Path]) -> None:
+    """Remove what was sorted, and what a lost worker had begun to write."""
+    for path in folder.iterdir():
+        if path.is_dir():
+            shutil.rmtree(path)
+        elif path not in parts:
+            path.unlink()
+
+
 @contextmanager
 def _whole_folder(target: Path) -> Iterator[Path]:
     draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
@@ -174,19 +196,22 @@ def _whole_folder(target: Path) -> Iterator[Path]:
 # -------------------------------------------------------------------- tasks
 
 
-def _sort_file(job: _Job, number: int) -> None:
+def _sort_file(job: _Job, number: int) -> int:
     pieces = read_pieces(job.files[number : number + 1], job.columns, rows=job.rows)
     target = job.sorted_file(number)
-    write_partitions(target, pieces, len(job.columns.axes), job.partitions)
+    return write_partitions(target, pieces, len(job.columns.axes), job.partitions)
 
 
 def _track_partition(job: _Job, partition: int) -> Totals:
+    n_axes = len(job.columns.axes)
+    # A worker new to the tracker compiles it at once, if the work is worth it.
+    announce(job.tracker, n_axes, n_axes * job.expected)
     tracks, totals = OpenTracks(job.tracker, job.sigma, OUTPUTS), Totals()
     with piece_writer(job.part(partition), job.columns) as write:
         for number, file in enumerate(job.files):
             for piece in read_partition(
                 job.sorted_file(number),
-                len(job.columns.axes),
+                n_axes,
                 partition,
                 job.partitions,
                 file=file,

@@ -8,6 +8,7 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
 from fuzzytrack.io.pieces import find_columns
+from fuzzytrack.testbed import partitions as partitions_module
 from fuzzytrack.testbed.partitions import track_partitions
 
 TRACKER = AlphaBetaTracker(FixedGains(0.5, 0.2))
@@ -61,6 +62,31 @@ def test_a_cluster_that_loses_a_worker(files, tmp_path):
     assert (there.tracks, there.plots) == (here.tracks, here.plots) == (30, 1500)
     assert there.summary == pytest.approx(here.summary, rel=1e-12)
     assert sorted(path.name for path in tmp_path.iterdir() if path.is_dir()) == ["here", "there"]
+    # Nothing is left of what was being written when the worker was lost.
+    names = sorted(path.name for path in (tmp_path / "there").iterdir())
+    assert names == [f"part-{number:05d}.parquet" for number in range(12)]
+
+
+def test_what_a_lost_worker_began_is_removed(files, tmp_path, monkeypatch):
+    columns = find_columns(files, id="id")
+    original = partitions_module._track_partition
+
+    def leave_a_draft(job, partition):
+        job.part(partition).with_name(f".part-{partition}.draft.parquet").write_bytes(b"begun")
+        return original(job, partition)
+
+    monkeypatch.setattr(partitions_module, "_track_partition", leave_a_draft)
+    track_partitions(TRACKER, files, columns, tmp_path / "out", partitions=2)
+    names = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert names == ["part-00000.parquet", "part-00001.parquet"]
+
+
+def test_a_partition_is_announced_before_it_is_tracked(files, tmp_path, monkeypatch):
+    announced = []
+    monkeypatch.setattr(partitions_module, "announce", lambda *given: announced.append(given))
+    columns = find_columns(files, id="id")
+    track_partitions(TRACKER, files, columns, tmp_path / "out", partitions=3)
+    assert announced == [(TRACKER, len(columns.axes), len(columns.axes) * 500)] * 3
 
 
 def test_a_partition_may_be_empty(files, tmp_path):
