@@ -15,6 +15,10 @@ from fuzzytrack.trackers.state import TrackState
 __all__ = ["Hop"]
 
 _FLOAT = np.dtype(np.float64)
+_NUMBERS = (float, int)
+_set_time, _set_shape, _set_lanes, _set_rows = (
+    vars(TrackState)[name].__set__ for name in ("time", "shape", "lanes", "rows")
+)
 
 
 class Hop:
@@ -38,7 +42,7 @@ class Hop:
     def __init__(self, core: Runner, shape: tuple[int, ...], lanes: int, needs_sigma: bool) -> None:
         self._call: Any = core.hop
         self._shape, self._lanes, self._rows = shape, lanes, core.rows
-        self._size = core.rows.kept * lanes
+        self._kept = (core.rows.kept, lanes)
         self._needs_sigma = needs_sigma
         # Taken out while in use, so that threads do not share one.
         self._buffers: list[NDArray[np.float64]] = []
@@ -55,23 +59,23 @@ class Hop:
             return None
         time, lanes, rows, shape = state.time, state.lanes, self._rows, self._shape
         if (
-            not isinstance(t, (float, int))
-            or time.shape
+            type(time) is not np.float64
+            or not isinstance(t, _NUMBERS)
             or z.dtype != _FLOAT
             or z.shape != shape
             or not z.flags.c_contiguous
-            or not lanes.flags.c_contiguous
             or (state.rows is not rows and state.rows != rows)
         ):
             return None
-        dt = t - float(time)
+        t = np.float64(t)
+        dt = float(t - time)
         if not 0.0 < dt < math.inf:
             return None
         try:
             buffer = self._buffers.pop()
         except IndexError:
             buffer = aligned(rows.total * BLOCK)
-        after = np.empty(lanes.shape)
+        after = np.empty(self._kept)
         plots = z if len(shape) == 1 else z.reshape(-1)
         infinite = self._call(buffer, self._lanes, lanes, plots, dt, sigma, after)
         self._buffers.append(buffer)
@@ -79,5 +83,8 @@ class Hop:
             return None
         # The constructor of a frozen class takes as long as all the arithmetic.
         new = object.__new__(TrackState)
-        new.__dict__.update(time=np.array(t, dtype=_FLOAT), shape=shape, lanes=after, rows=rows)
+        _set_time(new, t)
+        _set_shape(new, shape)
+        _set_lanes(new, after)
+        _set_rows(new, rows)
         return new

@@ -165,7 +165,8 @@ class LaneTracker(ABC):
         DataError, ValueError
             As for `run`.
         """
-        after = self._hop(state, z, t, sigma)
+        hop = self._hops.get(state.shape) or self._new_hop(state)
+        after = None if hop is None else hop(state, z, t, sigma)
         return self._one_step(state, z, t, sigma) if after is None else after
 
     def compile(self, n_axes: int = 1) -> None:
@@ -189,18 +190,14 @@ class LaneTracker(ABC):
         """Short ways to a next state, by shape of the plots."""
         return {}
 
-    def _hop(
-        self, state: TrackState, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
-    ) -> TrackState | None:
-        """State after one more plot by compiled code; None where that is not for it."""
-        hop = self._hops.get(state.shape)
-        if hop is None:
-            layout = _Layout.of(np.empty((0, *state.shape)), self.coupled)
-            core = runner(self, layout.lane_axes)
-            if core.hop is None:
-                return None
-            hop = self._hops[state.shape] = Hop(core, state.shape, layout.lanes, self.needs_sigma)
-        return hop(state, z, t, sigma)
+    def _new_hop(self, state: TrackState) -> Hop | None:
+        """Short way from states like this one, if the tracker is compiled."""
+        layout = _Layout.of(np.empty((0, *state.shape)), self.coupled)
+        core = runner(self, layout.lane_axes)
+        if core.hop is None:
+            return None
+        hop = self._hops[state.shape] = Hop(core, state.shape, layout.lanes, self.needs_sigma)
+        return hop
 
     def _one_step(
         self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
@@ -225,7 +222,7 @@ class LaneTracker(ABC):
                 dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
                 np.broadcast_to(sigmas[0], shape).tolist(),
             )
-        return TrackState(np.array(times[0]), plots.shape[1:], after, core.rows)
+        return TrackState(times[0].copy(), plots.shape[1:], after, core.rows)
 
     def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
         if sigma is None:
@@ -401,7 +398,10 @@ def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) 
         place = int(np.argwhere(~np.isfinite(times))[0][0])
         raise DataError(f"t: time at index {place} is not finite")
     before = times[:1] if state is None else np.broadcast_to(state.time, times.shape[1:])[None]
-    dts = np.diff(np.concatenate([before, times]), axis=0)
+    # In place: times of each track's own take as much memory as its plots.
+    dts = np.empty(times.shape)
+    np.subtract(times[:1], before, out=dts[:1])
+    np.subtract(times[1:], times[:-1], out=dts[1:])
     bad = dts <= 0
     if state is None:
         bad[:1] = False

@@ -20,7 +20,7 @@ __all__ = ["InfinitePlotError", "Recursion", "Runner"]
 Array = NDArray[np.float64]
 
 #: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
-#: sooner.
+#: sooner. Measured for a new tracker; code that is on disk would pay from a third of that.
 COMPILE_ABOVE = 200_000
 #: Coordinates of a job from which several threads pay.
 THREADS_ABOVE = 500_000

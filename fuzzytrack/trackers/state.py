@@ -30,14 +30,14 @@ class Gains:
     gamma: Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class TrackState:
     """What a tracker knows after a step.
 
     Attributes
     ----------
-    time : ndarray
-        Time of the last step (s), shape () or that of the batch.
+    time : float or ndarray
+        Time of the last step (s), a NumPy number or of the batch's shape.
     shape : tuple of int
         Shape of a plot: (n_axes,), (n_tracks, n_axes), or () for one axis alone.
     lanes : ndarray, shape (rows.kept, lanes)
@@ -46,10 +46,14 @@ class TrackState:
         The layout.
     """
 
-    time: Array
+    time: Array | np.float64
     shape: tuple[int, ...]
     lanes: Array
     rows: Rows
+
+    def __post_init__(self) -> None:
+        # Compiled code takes the numbers as they lie.
+        object.__setattr__(self, "lanes", np.ascontiguousarray(self.lanes))
 
     def _read(self, row: int, count: int) -> Array:
         return self.lanes[row : row + count].T.reshape(self.shape)
