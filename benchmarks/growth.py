@@ -12,8 +12,6 @@ from benchmarks.timing import Ratio, Timing, take_turns
 from benchmarks.work import (
     fixed_tracker,
     fuzzy_tracker,
-    keeps_only_predictions,
-    option,
     predictions,
     times_and_plots,
     updates_a_second,
@@ -23,6 +21,8 @@ from benchmarks.work import (
 __all__ = ["curve_rows", "thread_rows", "threads_curve", "tracks_curve"]
 
 SECTION = "Growth"
+#: Plot and prediction, and some air.
+BYTES_AN_UPDATE = 20
 #: Of a lane's state, before and after a run.
 BYTES_A_TRACK = 400
 
@@ -36,9 +36,7 @@ def tracks_curve(scale: Scale) -> Curve:
     for tracks, steps in scale.growth:
         point: dict[str, Any] = {"tracks": tracks, "steps": steps}
         curve.append(point)
-        # Plot, outputs, and what is checked on the way.
-        bytes_an_update = 26 if keeps_only_predictions() else 90
-        needed = tracks * (steps * bytes_an_update + BYTES_A_TRACK)
+        needed = tracks * (steps * BYTES_AN_UPDATE + BYTES_A_TRACK)
         if needed > machine.available_memory():
             point["why"] = f"{needed / 1e9:.0f} GB are not free"
             continue
@@ -64,8 +62,6 @@ def _many(tracker: Any, times: Any, plots: Any, count: int) -> None:
 
 def threads_curve(scale: Scale) -> Curve:
     """A large batch on one processor, and on more, up to all."""
-    if not option(fixed_tracker().run, "threads", 1):
-        raise NotMeasured("`run` has no option threads")
     times, plots = times_and_plots(scale.tracks, scale.steps)
     counts = sorted({2**k for k in range(8) if 2**k < machine.cores()} | {machine.cores()})
     works = {}

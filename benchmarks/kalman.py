@@ -12,7 +12,7 @@ from benchmarks import peers
 from benchmarks.report import NotMeasured, Row, Target
 from benchmarks.scale import Scale
 from benchmarks.timing import ratio, take_turns
-from benchmarks.work import difference, option, times_and_plots, warm
+from benchmarks.work import difference, times_and_plots, warm
 from fuzzytrack.schedulers.innovation import InnovationScheduler
 from fuzzytrack.schedulers.kalman import KalmanCA, KalmanCV
 from fuzzytrack.trackers.imm import InteractingModels
@@ -140,5 +140,4 @@ def _plots(scale: Scale) -> tuple[Any, Any]:
 
 
 def _last(tracker: Any, times: Any, plots: Any, sigma: float | None) -> Any:
-    kept = option(tracker.run, "keep", ("filtered",)) | option(tracker.run, "threads", 1)
-    return tracker.run(times, plots, sigma, **kept).filtered[-1]
+    return tracker.run(times, plots, sigma, keep=("filtered",), threads=1).filtered[-1]

@@ -1,4 +1,4 @@
-"""The machine: what it is, and how fast its memory is."""
+"""The machine: what it is, how fast its memory is, and what a second thread adds."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import platform
 import statistics
 import time
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib import metadata
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import Any
 import numba
 import numpy as np
 
-__all__ = ["Triad", "available_memory", "bandwidth", "cores", "describe"]
+__all__ = ["Arithmetic", "Copy", "Triad", "available_memory", "bandwidth", "cores", "describe"]
 
 PACKAGES = (
     "fuzzytrack", "numpy", "scipy", "numba", "llvmlite", "filterpy", "stonesoup", "simdkalman",
@@ -93,22 +94,55 @@ def _triad(a, b, c, factor):
         a[i] = b[i] + factor * c[i]
 
 
-class Triad:
-    """a = b + s·c over arrays larger than the caches, in one part for each thread."""
+@numba.njit(nogil=True, cache=True)
+def _arithmetic(numbers, rounds):
+    for _ in range(rounds):
+        for i in range(numbers.size):
+            x = numbers[i]
+            numbers[i] = ((0.25 * x + 0.5) * x + 0.125) * (1.0 - 0.5 * x)
 
-    def __init__(self, size: int, threads: int = 1) -> None:
-        self.bytes = 24 * size
-        arrays = [np.full(size, 1.0) for _ in range(3)]
-        self.parts = list(zip(*(np.array_split(a, threads) for a in arrays), strict=True))
-        self.pool = ThreadPoolExecutor(threads) if threads > 1 else None
+
+class _Shared:
+    """A job in one part for each thread."""
+
+    def __init__(self, work: Callable[..., Any], parts: Sequence[tuple[Any, ...]]) -> None:
+        self.work, self.parts = work, parts
+        self.pool = ThreadPoolExecutor(len(parts)) if len(parts) > 1 else None
 
     def __call__(self) -> None:
         if self.pool is None:
-            _triad(*self.parts[0], 0.5)
+            self.work(*self.parts[0])
             return
-        done = [self.pool.submit(_triad, *part, 0.5) for part in self.parts]
+        done = [self.pool.submit(self.work, *part) for part in self.parts]
         for each in done:
             each.result()
+
+
+class Triad(_Shared):
+    """a = b + s·c over arrays larger than the caches."""
+
+    def __init__(self, size: int, threads: int = 1) -> None:
+        self.bytes = 24 * size
+        split = (np.array_split(np.full(size, 1.0), threads) for _ in range(3))
+        super().__init__(_triad, [(*part, 0.5) for part in zip(*split, strict=True)])
+
+
+class Copy(_Shared):
+    """One array into another, larger than the caches."""
+
+    def __init__(self, size: int, threads: int = 1) -> None:
+        split = (np.array_split(np.full(size, 1.0), threads) for _ in range(2))
+        super().__init__(np.copyto, list(zip(*split, strict=True)))
+
+
+class Arithmetic(_Shared):
+    """Additions and multiplications within the first cache; `size` of each number of a block."""
+
+    BLOCK = 240
+
+    def __init__(self, size: int, threads: int = 1) -> None:
+        rounds = max(1, size // threads)
+        super().__init__(_arithmetic, [(np.full(self.BLOCK, 0.5), rounds) for _ in range(threads)])
 
 
 def bandwidth(size: int, threads: int, repeats: int) -> dict[str, float]:

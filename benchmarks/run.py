@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from benchmarks import batch, engines, growth, kalman, machine, processes, streaming
+from benchmarks import batch, engines, growth, kalman, machine, processes, profile, streaming
 from benchmarks.report import Row, as_dict, collect
 from benchmarks.scale import Scale
 
@@ -23,6 +23,7 @@ JOBS: tuple[Job, ...] = (
     (batch.SECTION, "two threads", batch.threads),
     (batch.SECTION, "given gains", batch.numpy_gains),
     (batch.SECTION, "plug-in scheduler", batch.plugin),
+    (profile.SECTION, "where the time goes", profile.where),
     (kalman.SECTION, "Kalman CV", kalman.velocity),
     (kalman.SECTION, "Kalman CA", kalman.acceleration),
     (kalman.SECTION, "Kim-Lee", kalman.kim_lee),

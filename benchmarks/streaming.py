@@ -84,8 +84,7 @@ def scan(scale: Scale) -> list[Row]:
     """A scan of many tracks at once."""
     tracker = fuzzy_tracker()
     # Without a compiled step a scan takes long.
-    compiled = scale.compiles and hasattr(tracker, "compile")
-    tracks, steps = scale.scan_tracks, 200 if compiled else 5
+    tracks, steps = scale.scan_tracks, 200 if scale.compiles else 5
     _, plots = times_and_plots(tracks, steps, axes=2)
     warm(scale, tracker, 2)
     works = {"ours": _stream(tracker, plots)}
@@ -94,7 +93,7 @@ def scan(scale: Scale) -> list[Row]:
         works["FilterPy"] = lambda: track(plots[:, 0])
     except NotMeasured:
         track = None
-    found = take_turns(works, scale.repeats if compiled else 2)
+    found = take_turns(works, scale.repeats if scale.compiles else 2)
     each = 1e6 / steps
     what = f"scan of {tracks:,} tracks x 2 axes, fuzzy gains"
     ours = found["ours"].median * each

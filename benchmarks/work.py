@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import importlib.util
-import inspect
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 import fuzzytrack as ft
 from benchmarks.report import NotMeasured
 from benchmarks.scale import Scale
 from fuzzytrack.schedulers import GainScheduler
-from fuzzytrack.trackers.lanes import announce
 
 __all__ = [
     "ALPHA", "BETA", "GivenGains", "difference", "fixed_tracker", "fuzzy_tracker",
-    "keeps_only_predictions", "option",
     "plugin_tracker", "predictions", "times_and_plots", "updates_a_second", "warm",
 ]  # fmt: skip
 
@@ -122,11 +118,6 @@ def times_and_plots(
     return times, plots
 
 
-def option(function: Callable[..., Any], name: str, value: Any) -> dict[str, Any]:
-    """The option of a function as a keyword, or nothing if it has no such option."""
-    return {name: value} if name in inspect.signature(function).parameters else {}
-
-
 def predictions(
     tracker: Any,
     times: Array,
@@ -134,26 +125,17 @@ def predictions(
     sigma: Any = None,
     *,
     threads: int | None = 1,
+    dtype: DTypeLike = np.float64,
 ) -> Array:
-    """Predictions of a batch, and nothing else where the tracker can be asked for that."""
-    kept = option(tracker.run, "keep", ("predicted",))
-    shared = option(tracker.run, "threads", threads)
-    return tracker.run(times, plots, sigma, **kept, **shared).predicted
-
-
-def keeps_only_predictions() -> bool:
-    """Whether a run can be asked for predictions alone."""
-    return bool(option(fixed_tracker().run, "keep", ()))
+    """Predictions of a batch, and nothing else."""
+    kept = ("predicted",)
+    return tracker.run(times, plots, sigma, keep=kept, threads=threads, dtype=dtype).predicted
 
 
 def warm(scale: Scale, tracker: Any, axes: int) -> None:
     """Have a tracker compiled, unless the jobs are tiny."""
-    if not scale.compiles:
-        return
-    if hasattr(tracker, "compile"):
+    if scale.compiles:
         tracker.compile(axes)
-    else:
-        announce(tracker, axes, 10**9)
 
 
 def updates_a_second(plots: Array, seconds: float) -> float:

@@ -100,6 +100,78 @@ def test_the_bare_loop_is_the_recursion():
     np.testing.assert_allclose(predicted[:, 0], [0.0, 2.8, 2.8 + 1.6 + 2 * (0.8 + 0.64)])
 
 
+@pytest.fixture
+def small():
+    """A little of a full run, in one block and a bit."""
+    from benchmarks.scale import TINY
+
+    return dataclasses.replace(TINY, name="full", tracks=250, steps=8, compiles=True)
+
+
+def test_a_tracker_is_measured_in_single_precision(small):
+    from benchmarks import batch, work
+
+    row = batch.single(small, "fixed gains", work.fixed_tracker())
+    assert row.base > 0.0
+    # Rounded to 7 digits, so not the same, but near.
+    apart = float(row.note.partition("differ by ")[2].split()[0])
+    assert 0.0 < apart < 1e-3
+
+
+def test_the_parts_of_a_batch_are_the_batch(small):
+    from benchmarks import profile, work
+
+    tracker = work.fixed_tracker()
+    times, plots = work.times_and_plots(small.tracks, small.steps, missed=0.1)
+    result = np.zeros(plots.size)
+    passage = profile._passage(tracker, times, plots, result)
+    for _ in range(2):
+        passage()
+        np.testing.assert_array_equal(
+            result.reshape(plots.shape), work.predictions(tracker, times, plots)
+        )
+    rows = profile.parts(small, "fixed gains", tracker)
+    assert [row.value > 0.0 for row in rows] == [True] * 6
+    assert [row.base for row in rows] == [None] + [rows[0].value] * 5
+
+
+def test_the_steady_step_alone_tracks():
+    from benchmarks import profile, work
+    from fuzzytrack.trackers.lanes import runner
+    from fuzzytrack.trackers.rows import BLOCK, aligned
+
+    core = runner(work.fixed_tracker(), 1)
+    buffer, predicted = aligned(core.rows.total * BLOCK), aligned(BLOCK)
+    steady = core.steady_code(False).address
+    profile._go_round(steady, buffer, np.full(profile.ROUND * BLOCK, 8.0), predicted, 1)
+    # Position and velocity from 0 towards a plot at 8 that stays, one second a step.
+    x = v = 0.0
+    for _ in range(profile.ROUND):
+        before = x + v
+        x, v = before + work.ALPHA * (8.0 - before), v + work.BETA * (8.0 - before)
+    np.testing.assert_allclose(predicted, before)
+
+
+def test_the_work_of_the_machine_is_done_by_all_threads():
+    from benchmarks import machine
+
+    whole = machine.Arithmetic(6)
+    shared = machine.Arithmetic(6, 2)
+    whole()
+    shared()
+    assert [rounds for _, rounds in whole.parts + shared.parts] == [6, 3, 3]
+    once = machine.Arithmetic(3)
+    once()
+    for numbers, _ in shared.parts:
+        np.testing.assert_array_equal(numbers, once.parts[0][0])
+    copy = machine.Copy(5, 2)
+    for target, _ in copy.parts:
+        target[:] = 0.0
+    copy()
+    assert [len(target) for target, _ in copy.parts] == [3, 2]
+    assert all((target == 1.0).all() for target, _ in copy.parts)
+
+
 def test_a_command_is_timed_in_a_new_process():
     from benchmarks import processes
     from benchmarks.scale import TINY

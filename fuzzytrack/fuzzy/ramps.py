@@ -50,10 +50,14 @@ class Ramps:
         """
         written = []
         for k, ends in enumerate(self.ends):
-            for j, (low, high) in enumerate(ends, start=1):
+            # Ramps of one slope share a product.
+            slopes = [1.0 / (high - low) for low, high in ends]
+            products = {slope: f"p{k}_{m}" for m, slope in enumerate(dict.fromkeys(slopes))}
+            written += [f"{name} = x{k} * {slope!r}" for slope, name in products.items()]
+            for j, ((low, _), slope) in enumerate(zip(ends, slopes, strict=True), start=1):
                 name = f"r{k}_{j}"
                 written += [
-                    f"{name} = (x{k} - {low!r}) * {1.0 / (high - low)!r}",
+                    f"{name} = {products[slope]} - {low * slope!r}",
                     f"{name} = {name} if {name} > 0.0 else 0.0",
                     f"{name} = {name} if {name} < 1.0 else 1.0",
                 ]

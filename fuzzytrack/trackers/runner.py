@@ -227,14 +227,16 @@ class Runner:
         shapes = {name: plots.shape[:2] if name in _GAINS else plots.shape for name in keep}
         outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
         unwanted = np.empty(0, dtype)
-        inputs = [np.ascontiguousarray(array, dtype).reshape(-1) for array in (plots, dts, sigmas)]
+        inputs = [_in_a_row(array, dtype) for array in (plots, dts, sigmas)]
         given = (
             *inputs, _strides(dts.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
             after.reshape(-1),
             tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
         )  # fmt: skip
         results = bool({*keep} & {"innovation", *_GAINS})
-        step, steady = self.step_code(dtype), self.steady_code(results, dtype)
+        # A single step is never steady: a stream does not stop to compile what it will not use.
+        steady = self.steady_code(results, dtype) if n_steps > 1 else None
+        step = self.step_code(dtype)
         run, places = passage.compiled_run(), passage.layout(self.rows)
         code = (step.address, 0 if steady is None else steady.address, results)
 
@@ -250,8 +252,8 @@ class Runner:
 
     @property
     def native(self) -> bool:
-        """Whether there is compiled code."""
-        return bool(self._code)
+        """Whether there is a compiled step in double precision."""
+        return ("step", np.float64) in self._code
 
     def compile(self) -> None:
         """Compile now whatever is ever going to be in double precision."""
@@ -261,8 +263,9 @@ class Runner:
 
         n_axes = self.rows.n_axes
         lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
-        for keep in (OUTPUTS, ()):
-            self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], keep, 1)
+        for results in (True, False):
+            self.steady_code(results)
+        self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], (), 1)
         hop: Any = passage.compiled_hop()
         places = (self.step_code().address, n_axes, self.rows.state, self.rows.kept, self.rows.plot)
         buffer = aligned(self.rows.total * BLOCK)
@@ -285,7 +288,8 @@ class Runner:
         self, key: tuple[object, type], make: Callable[[], Callable[..., Any]], arguments: str
     ) -> Any:
         if key not in self._code:
-            self._code[key] = entry_point(make(), arguments, key[1])
+            # Threads may compile at once; all must go on with the one that is kept.
+            self._code.setdefault(key, entry_point(make(), arguments, key[1]))
         return self._code[key]
 
 
@@ -308,6 +312,15 @@ def _in_parts(part: Callable[[tuple[int, int]], int], count: int, threads: int) 
     ends = [(first, min(first + size, count)) for first in range(0, count, size)]
     with ThreadPoolExecutor(threads) as pool:
         return sum(pool.map(part, ends))
+
+
+def _in_a_row(array: NDArray[Any], dtype: type) -> NDArray[Any]:
+    """Its numbers as one type of array, or the passage would be compiled once for each."""
+    # Where a plot is missed, a sigma may be of any size.
+    with np.errstate(over="ignore"):
+        row: NDArray[Any] = np.ascontiguousarray(array, dtype).reshape(-1)
+    row.flags.writeable = False
+    return row
 
 
 def _strides(shape: tuple[int, ...], full: tuple[int, ...]) -> tuple[int, ...]:

@@ -1,0 +1,124 @@
+"""Where the time of a batch goes: the run, its compiled passage, a step, and the memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.report import NotMeasured, Row
+from benchmarks.scale import Scale
+from benchmarks.timing import ratio, take_turns
+from benchmarks.work import (
+    fixed_tracker,
+    fuzzy_tracker,
+    predictions,
+    times_and_plots,
+    updates_a_second,
+    warm,
+)
+from fuzzytrack.trackers import passage
+from fuzzytrack.trackers.calls import call_steady
+from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.rows import BLOCK, OUTPUTS, aligned
+
+__all__ = ["parts", "where"]
+
+SECTION = "Where the time of a batch goes (ms, float64, one thread)"
+UNIT = "ms"
+#: Steps of plots that go round in the first cache, beside the state of a block.
+ROUND = 4
+
+Array = NDArray[np.float64]
+Work = Callable[[], Any]
+
+
+def where(scale: Scale) -> list[Row]:
+    """Parts of a batch with fixed and with fuzzy gains."""
+    if scale.name != "full":
+        raise NotMeasured("in a full run only")
+    named = {"fixed gains": fixed_tracker(), "fuzzy exact": fuzzy_tracker()}
+    return [row for name, tracker in named.items() for row in parts(scale, name, tracker)]
+
+
+def parts(scale: Scale, name: str, tracker: Any) -> list[Row]:
+    """Parts of a batch, against the whole run in the same rounds."""
+    times, plots = times_and_plots(scale.tracks, scale.steps, missed=0.1)
+    warm(scale, tracker, 1)
+    result, copied = np.zeros(plots.size), np.zeros_like(plots)
+    works: dict[str, Work] = {
+        "whole": lambda: predictions(tracker, times, plots),
+        "passage": _passage(tracker, times, plots, result),
+        "no output": _passage(tracker, times, plots, np.empty(0)),
+        "step": _steps(tracker, plots),
+        "fill": lambda: np.full(plots.shape, 1.0),
+        "copy": lambda: np.copyto(copied, plots),
+    }
+    found = take_turns(works, scale.repeats)
+    whole = found["whole"]
+    speed = updates_a_second(plots, found["step"].median)
+    notes = {
+        "passage": ("compiled passage, into a result that is there",
+                    "Lanes made fresh each time included. What the whole run takes beyond it: "
+                    "checks, and the first touch of a fresh result."),
+        "no output": ("compiled passage, without output",
+                      "Predictions go to one block in the cache."),
+        "step": ("steady steps alone, one block in the first cache",
+                 f"For as many updates: {speed:.4g} M/s. Plots, state and predictions stay there."),
+        "fill": ("memory: filling a fresh result", "np.full; most of it is the first touch."),
+        "copy": ("memory: copying the plots", "Into an array that is there."),
+    }  # fmt: skip
+    rows = [
+        Row(SECTION, f"{name}, whole `run`", 1e3 * whole.median, UNIT,
+            note=f"{scale.tracks:,} tracks x {scale.steps} steps, {plots.size / 1e6:.3g} million "
+            "updates; a ratio below says how many times faster than this a part is."),
+    ]  # fmt: skip
+    for key, (what, note) in notes.items():
+        rows.append(
+            Row(SECTION, f"{name}, {what}", 1e3 * found[key].median, UNIT, "whole `run`",
+                1e3 * whole.median, ratio(whole, found[key]), note=note)
+        )  # fmt: skip
+    return rows
+
+
+def _passage(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work:
+    """What `run` calls once all is checked and laid out; an empty array takes no predictions."""
+    core, (steps, tracks, _) = runner(tracker, 1), plots.shape
+    fresh = core.fresh(tracks).reshape(-1)
+    lanes, nothing = fresh.copy(), np.empty(0)
+    outputs = (predicted, *(nothing for _ in OUTPUTS[1:]))
+    dts = np.diff(times, prepend=times[0])
+    code = (core.step_code().address, core.steady_code(False).address, False)
+    buffer, scratch = aligned(core.rows.total * BLOCK), np.empty(BLOCK)
+    # One time step and one sigma for all tracks.
+    given = (plots.reshape(-1), dts, np.full(1, np.nan), (1, 0), (0, 0, 0), lanes, outputs)
+    run, places = passage.compiled_run(), passage.layout(core.rows)
+
+    def work() -> None:
+        lanes[:] = fresh
+        run(*code, *places, buffer, scratch, steps, tracks, 0, tracks, *given)
+
+    return work
+
+
+def _steps(tracker: Any, plots: Array) -> Work:
+    """The steady step of one block over and over, as many updates as the plots have."""
+    core = runner(tracker, 1)
+    steady, buffer = core.steady_code(False).address, aligned(core.rows.total * BLOCK)
+    # Tracks that stand at 0 and have seen two plots.
+    buffer[core.rows.plots * BLOCK : (core.rows.plots + 1) * BLOCK] = 2.0
+    few = aligned(ROUND * BLOCK)
+    few[:] = np.resize(plots[-ROUND:].reshape(-1), few.size)
+    predicted = aligned(BLOCK)
+    rounds = max(1, plots.size // few.size)
+    return lambda: _go_round(steady, buffer, few, predicted, rounds)
+
+
+@numba.njit(nogil=True, cache=True)
+def _go_round(steady, buffer, plots, predicted, rounds):
+    for _ in range(rounds):
+        for k in range(ROUND):
+            call_steady(steady, buffer, BLOCK, 1.0, plots, k * BLOCK, predicted, 0)
