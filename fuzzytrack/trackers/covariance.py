@@ -79,7 +79,7 @@ def track_covariance(
     ------
     ValueError
         If a standard deviation is out of its range, does not broadcast or is missing, the result
-        goes on from a state, or its states do not follow from its gains.
+        goes on from a state or is in single precision, or its states do not follow from its gains.
 
     Notes
     -----
@@ -104,6 +104,8 @@ def track_covariance(
     array([  nan,   nan, 0.   , 0.221])
     """
     plots = result.measured
+    if plots.dtype != np.float64:
+        raise ValueError(f"result: its dtype must be float64, got {plots.dtype}; run in float64")
     order = _order(result, acceleration_sigma)
     noise = number("sigma_v", nonnegative("sigma_v", sigma_v))
     prior = _prior(velocity_sigma, acceleration_sigma, order)

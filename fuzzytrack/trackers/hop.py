@@ -40,6 +40,8 @@ class Hop:
     """
 
     def __init__(self, core: Runner, shape: tuple[int, ...], lanes: int, needs_sigma: bool) -> None:
+        # Its code is called by address, and must not go.
+        self._core = core
         self._call: Any = core.hop
         self._shape, self._lanes, self._rows = shape, lanes, core.rows
         self._kept = (core.rows.kept, lanes)

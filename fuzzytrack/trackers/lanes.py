@@ -373,7 +373,8 @@ def _check_threads(threads: int | None) -> None:
 
 def _infinite_plot(plots: Array) -> DataError:
     place = tuple(int(k) for k in np.argwhere(np.isinf(plots))[0])
-    return DataError(f"z: infinite plot at index {place}; use NaN for a missed one")
+    large = " (or too large for float32)" if plots.dtype == np.float32 else ""
+    return DataError(f"z: infinite plot{large} at index {place}; use NaN for a missed one")
 
 
 def _check_state(plots: Array, state: TrackState | None, rows: Rows) -> None:

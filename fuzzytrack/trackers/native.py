@@ -13,6 +13,7 @@ from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleT
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 __all__ = ["compiled", "entry_point", "fingerprint", "own_numbers", "use_wide_vectors"]
 
@@ -158,7 +159,7 @@ def _prepared(value: Any, dtype: type) -> Any:
     if isinstance(value, FunctionType):
         return _helper(_Content.of(value, dtype))
     if isinstance(value, tuple) and len(value) > _LONG_TUPLE:
-        return np.array(value, dtype=dtype)
+        return _table(value, dtype)
     if dtype is np.float64:
         return value
     if isinstance(value, tuple):
@@ -170,8 +171,25 @@ def _rounded(value: float, dtype: type) -> Any:
     with np.errstate(over="ignore", under="ignore"):
         number = dtype(value)
     if math.isfinite(value) and (not np.isfinite(number) or (number == 0.0) != (value == 0.0)):
-        raise ValueError(f"dtype: this tracker works with {value:g}, which {np.dtype(dtype)} lacks")
+        raise _lacking(value, dtype)
     return number
+
+
+def _table(values: tuple[Any, ...], dtype: type) -> NDArray[Any]:
+    """Numbers as an array; in a table what is too small may count as 0."""
+    exact = np.array(values, dtype=np.float64)
+    with np.errstate(over="ignore", under="ignore"):
+        table: NDArray[Any] = exact.astype(dtype)
+    too_large = np.isinf(table) & np.isfinite(exact)
+    if too_large.any():
+        raise _lacking(exact[too_large][0], dtype)
+    return table
+
+
+def _lacking(value: float, dtype: type) -> ValueError:
+    return ValueError(
+        f"dtype: this tracker works with {value:g}, which {np.dtype(dtype)} lacks; use float64"
+    )
 
 
 @lru_cache(maxsize=512)

@@ -1,5 +1,6 @@
 """The fast ways through the code give the numbers of the slow ones, and are the fast ones."""
 
+import itertools
 import pickle
 import platform
 import re
@@ -15,6 +16,7 @@ from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.trackers import runner as module
 from fuzzytrack.trackers.lanes import runner
 from fuzzytrack.trackers.native import entry_point
+from fuzzytrack.trackers.passage import compiled_run
 from fuzzytrack.trackers.result import KEPT
 from fuzzytrack.trackers.rows import BLOCK, aligned
 
@@ -73,17 +75,55 @@ def test_batches_equal_plain_python(name):
     expect_same(arrays(TRACKERS[name].run(own, plots)), arrays(result))
 
 
-@pytest.mark.parametrize("keep", [("predicted",), ("velocity", "gains"), ()])
+def subsets(names):
+    return [c for size in range(len(names) + 1) for c in itertools.combinations(names, size)]
+
+
+@pytest.mark.parametrize("tracker", [FIXED, COUPLED])
 @pytest.mark.usefixtures("compile_always")
-def test_what_is_kept_is_the_same(keep):
+def test_what_is_kept_is_the_same(tracker):
+    times, plots = recording(tracks=9)
+    whole = tracker.run(times, plots)
+    for keep in subsets(KEPT):
+        part = tracker.run(times, plots, keep=keep)
+        assert part.kept == keep
+        for name in set(keep) - {"gains"}:
+            np.testing.assert_array_equal(getattr(part, name), getattr(whole, name))
+        if "gains" in keep:
+            np.testing.assert_array_equal(part.gains.beta, whole.gains.beta)
+        np.testing.assert_array_equal(part.state.lanes, whole.state.lanes)
+
+
+@pytest.mark.parametrize("name", TRACKERS)
+@pytest.mark.parametrize("tracks", [1, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK + 1])
+@pytest.mark.usefixtures("compile_always")
+def test_the_last_block_may_be_of_any_size(name, tracks):
+    tracker, (times, plots) = TRACKERS[name], recording(2 * BLOCK + 1, 5)
+    plots = plots[:, -tracks:] if tracker.coupled else plots[:, -tracks:, :1]
+    after, plain = run_plain(tracker, times, plots)
+    for steps in (slice(0, 1), slice(0, 5)):
+        result = tracker.run(times[steps], plots[steps])
+        np.testing.assert_array_equal(result.innovation.ravel(), plain["innovation"][steps].ravel())
+    np.testing.assert_array_equal(result.state.lanes, after)
+    predicted = tracker.run(times, plots, keep="predicted").predicted
+    np.testing.assert_array_equal(predicted.ravel(), plain["predicted"].ravel())
+
+
+@pytest.mark.usefixtures("compile_always")
+def test_the_passage_is_compiled_once_for_all_forms_of_input():
     times, plots = recording()
-    whole, part = FIXED.run(times, plots), FIXED.run(times, plots, keep=keep)
-    assert part.kept == keep
-    for name in set(keep) - {"gains"}:
-        np.testing.assert_array_equal(getattr(part, name), getattr(whole, name))
-    if "gains" in keep:
-        np.testing.assert_array_equal(part.gains.beta, whole.gains.beta)
-    np.testing.assert_array_equal(part.state.lanes, whole.state.lanes)
+    own, sealed = np.repeat(times[:, None], plots.shape[1], axis=1), plots.copy()
+    sealed.flags.writeable = False
+    # Also of a stream, as `compile` leaves it.
+    FIXED.compile()
+    known = list(compiled_run().signatures)
+    expected = FIXED.run(times, plots)
+    for t, z, sigma in (
+        (times, sealed, None), (own, plots, np.full(plots.shape, 2.0)), (own, plots, [2.0, 3.0]),
+    ):  # fmt: skip
+        expect_same(arrays(FIXED.run(t, z, sigma)), arrays(expected))
+    FIXED.run(times, plots[:, 0, 0])
+    assert compiled_run().signatures == known
 
 
 def test_what_was_not_kept_says_so():
