@@ -141,7 +141,7 @@ def test_plots_that_are_too_large_are_found(tracker, value):
     times, plots = recording()
     # The other axis of the track was missed at that time.
     plots[9, BLOCK] = np.nan, value
-    with pytest.raises(ft.DataError, match=rf"plot at index \(9, {BLOCK}, 1\)"):
+    with pytest.raises(ft.DataError, match=rf"too large for float32\) at index \(9, {BLOCK}, 1\)"):
         single(tracker, times, plots, threads=2)
 
 
