@@ -39,9 +39,9 @@ def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int)
 
 def _infinite(numbers: Any, start: int, count: int) -> int:
     """How many of some numbers are infinite."""
-    found = 0
-    for z in numbers[start : start + count]:
-        found += (z == math.inf) | (z == -math.inf)
+    some, found = numbers[start : start + count], 0
+    for i in range(count):
+        found += abs(some[i]) == math.inf
     return found
 
 
@@ -52,9 +52,9 @@ def _copy_out(b: Any, row: int, target: Any, start: int, stride: int, count: int
 
 
 def _all_have(b: Any, row: int, count: int, least: float) -> bool:
-    lacking = 0
-    for value in b[row * BLOCK : row * BLOCK + count]:
-        lacking += value < least
+    values, lacking = b[row * BLOCK : row * BLOCK + count], 0
+    for i in range(count):
+        lacking += values[i] < least
     return lacking == 0
 
 
