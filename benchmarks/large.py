@@ -30,8 +30,8 @@ from benchmarks.work import ROOT
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
 from fuzzytrack.io.pieces import ROWS, find_columns, read_pieces, recording_files
-from fuzzytrack.testbed.partitions import track_partitions
-from fuzzytrack.testbed.streaming import run_iter
+from fuzzytrack.recordings.partitions import track_partitions
+from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lanes import LaneTracker
 

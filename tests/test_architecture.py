@@ -16,6 +16,7 @@ LAYERS = [
     {"schedulers"},
     {"trackers"},
     {"io", "plotting", "testing"},
+    {"recordings"},
     {"testbed"},
     {"papers"},
     {"cli"},

@@ -13,9 +13,9 @@ from fuzzytrack.io.files import check_output
 from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
 from fuzzytrack.io.pieces import ROWS, find_columns, read_pieces, recording_files
 from fuzzytrack.io.tables import table_writer
-from fuzzytrack.testbed.partitions import check_output_folder, track_partitions
-from fuzzytrack.testbed.streaming import OpenTracks
-from fuzzytrack.testbed.totals import Totals
+from fuzzytrack.recordings.partitions import check_output_folder, track_partitions
+from fuzzytrack.recordings.streaming import OpenTracks
+from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lanes import LaneTracker
 

@@ -17,7 +17,7 @@ from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.tables import table_writer
 from fuzzytrack.io.tracks import Recording, read_tracks, write_tracks
-from fuzzytrack.testbed.ragged import run_tracks
+from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lanes import LaneTracker
 from fuzzytrack.trackers.result import TrackResult
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fuzzytrack.cli.large_jobs import LargeJob
-    from fuzzytrack.testbed.totals import Totals
+    from fuzzytrack.recordings.totals import Totals
 
 __all__ = ["read", "track"]
 

@@ -5,12 +5,10 @@ from fuzzytrack.testbed.fusion import fuse, fuse_pair
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.noise import Noise, Plots, noisy_plots
 from fuzzytrack.testbed.published import TrackSet, kim_lee, llinas_maneuver, s3, track_set, warship
-from fuzzytrack.testbed.ragged import run_tracks
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.testbed.scenario import FieldSensors, PlotNoise, Scenario
 from fuzzytrack.testbed.sensor_field import SensorField, canonical_field, sensor_grid
 from fuzzytrack.testbed.starting import prepare_start
-from fuzzytrack.testbed.streaming import run_iter
 from fuzzytrack.testbed.trajectories import (
     constant_acceleration,
     constant_velocity,
@@ -42,8 +40,6 @@ __all__ = [
     "monte_carlo",
     "noisy_plots",
     "prepare_start",
-    "run_iter",
-    "run_tracks",
     "s3",
     "sensor_grid",
     "track_set",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzytrack.testbed.ragged import Batch, batches
+from fuzzytrack.recordings.ragged import Batch, batches
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["Comparison", "compare", "compare_tracks"]

@@ -117,7 +117,7 @@ class LaneTracker(ABC):
         sigmas = layout.to_lanes(self._sigma(sigma, plots))
         try:
             after, raw = core(
-                core.fresh(layout.lanes) if state is None else state.lanes,
+                None if state is None else state.lanes,
                 layout.to_lanes(plots),
                 layout.times_to_lanes(dts),
                 sigmas,

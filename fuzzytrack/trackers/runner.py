@@ -100,7 +100,7 @@ class Runner:
 
     def __call__(
         self,
-        lanes: Array,
+        lanes: Array | None,
         plots: NDArray[Any],
         dts: Array,
         sigmas: Array,
@@ -112,7 +112,8 @@ class Runner:
 
         Parameters
         ----------
-        lanes : ndarray, shape (rows.kept, lanes)
+        lanes : ndarray, shape (rows.kept, lanes), or None
+            None for lanes that have seen nothing.
         plots : ndarray, shape (n_steps, lanes, n_axes)
             Of the type of number to work with.
         dts : ndarray, shape (n_steps, lanes or 1)
@@ -143,9 +144,10 @@ class Runner:
             large = max(self.horizon, self.work + plots.size) > COMPILE_ABOVE
             native = large or plots.dtype != np.float64
         self.work += plots.size
+        after = self.fresh(plots.shape[1]) if lanes is None else np.array(lanes, order="C")
         if native:
-            return self._run_compiled(lanes, plots, dts, sigmas, keep, threads)
-        return self._run_plain(lanes, plots, dts, sigmas, keep)
+            return self._run_compiled(after, plots, dts, sigmas, keep, threads)
+        return self._run_plain(after, plots, dts, sigmas, keep)
 
     def step(
         self, lanes: Array, plots: Array, dts: list[float], sigmas: list[list[float]]
@@ -179,7 +181,7 @@ class Runner:
         return self.recursion.step(1)
 
     def _run_plain(
-        self, lanes: Array, plots: Array, dts: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
+        self, after: Array, plots: Array, dts: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
     ) -> tuple[Array, dict[str, Array]]:
         if np.isinf(plots).any():
             raise InfinitePlotError
@@ -190,9 +192,8 @@ class Runner:
         given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
         n_state = rows.last_plot
         trace = np.empty((n_steps, count, n_state + rows.kept - rows.predicted))
-        after = lanes.copy()
         for lane in range(count):
-            b = lanes[:, lane].tolist() + [0.0] * (rows.total - rows.kept)
+            b = after[:, lane].tolist() + [0.0] * (rows.total - rows.kept)
             history = []
             for row in given[:, lane].tolist():
                 b[rows.plot : rows.change] = row
@@ -213,7 +214,7 @@ class Runner:
 
     def _run_compiled(
         self,
-        lanes: Array,
+        after: Array,
         plots: NDArray[Any],
         dts: Array,
         sigmas: Array,
@@ -223,7 +224,6 @@ class Runner:
         from fuzzytrack.trackers import passage
 
         (n_steps, count, n_axes), dtype = plots.shape, plots.dtype.type
-        after = np.array(lanes, order="C")
         shapes = {name: plots.shape[:2] if name in _GAINS else plots.shape for name in keep}
         outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
         unwanted = np.empty(0, dtype)

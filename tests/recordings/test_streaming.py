@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
 from fuzzytrack.io.pieces import Piece
-from fuzzytrack.testbed.streaming import OpenTracks, run_iter
-from fuzzytrack.testbed.totals import Totals
+from fuzzytrack.recordings.streaming import OpenTracks, run_iter
+from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.trackers.catalog import make_tracker
 
 FIXED = AlphaBetaTracker(FixedGains(0.5, 0.2))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzytrack.testbed.streaming import OpenTracks, TrackedPiece
+from fuzzytrack.recordings.streaming import OpenTracks, TrackedPiece
 
 __all__ = ["Totals"]
 

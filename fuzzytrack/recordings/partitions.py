@@ -18,8 +18,8 @@ from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
 from fuzzytrack.io.pieces import ROWS, read_pieces
 from fuzzytrack.io.shuffle import read_partition, write_partitions
-from fuzzytrack.testbed.streaming import OpenTracks
-from fuzzytrack.testbed.totals import Totals
+from fuzzytrack.recordings.streaming import OpenTracks
+from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.trackers.lanes import LaneTracker, announce
 
 __all__ = ["check_output_folder", "track_partitions"]
@@ -96,7 +96,7 @@ def track_partitions(
     Raises
     ------
     DataError, ValueError, OSError
-        As `fuzzytrack.io.read_pieces`, `fuzzytrack.testbed.run_iter` and `check_output_folder`.
+        As `fuzzytrack.io.read_pieces`, `fuzzytrack.recordings.run_iter` and `check_output_folder`.
 
     Notes
     -----

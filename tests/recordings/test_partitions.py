@@ -8,8 +8,8 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
 from fuzzytrack.io.pieces import find_columns
-from fuzzytrack.testbed import partitions as partitions_module
-from fuzzytrack.testbed.partitions import track_partitions
+from fuzzytrack.recordings import partitions as partitions_module
+from fuzzytrack.recordings.partitions import track_partitions
 
 TRACKER = AlphaBetaTracker(FixedGains(0.5, 0.2))
 
