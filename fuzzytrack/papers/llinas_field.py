@@ -22,6 +22,7 @@ from fuzzytrack.testbed.starting import prepare_start
 from fuzzytrack.testbed.trajectories import constant_acceleration, turn_with_angular_acceleration
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.trackers.lanes import announce
 from fuzzytrack.trackers.state import Gains
 
 __all__ = [
@@ -147,9 +148,11 @@ def _in_field(name: str, time: Array, position: Array, spacing: str = "dense") -
 def dense(runs: int, seed: int, progress: Progress) -> dict[str, Results]:
     """Runs of the five trackers on M1 to M4, 60 s apart, by maneuver."""
     found, everyone = {}, trackers()
-    for number, name in enumerate(MANEUVERS):
+    scenarios = [_in_field(name, *llinas_maneuver(name)) for name in MANEUVERS]
+    for tracker in everyone.values():
+        announce(tracker, 2, runs * sum(2 * len(scenario.time) for scenario in scenarios))
+    for number, (name, scenario) in enumerate(zip(MANEUVERS, scenarios, strict=True)):
         share = part(progress, number / len(MANEUVERS), (number + 1) / len(MANEUVERS))
-        scenario = _in_field(name, *llinas_maneuver(name))
         found[name] = monte_carlo(scenario, everyone, runs, seed, progress=share)
     return found
 

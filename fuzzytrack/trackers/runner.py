@@ -190,18 +190,20 @@ class Runner:
         # What a step is given, in the order of the rows: plot, sigma, time step.
         all_dts = np.broadcast_to(dts[:, :, None], (n_steps, count, 1))
         given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
-        n_state = rows.last_plot
-        trace = np.empty((n_steps, count, n_state + rows.kept - rows.predicted))
+        # Looked up once: this is the inner loop of a small job.
+        n_state, n_kept, results = rows.last_plot, rows.kept, slice(rows.predicted, rows.kept)
+        told, scratch = slice(rows.plot, rows.change), [0.0] * (rows.total - rows.kept)
+        trace = np.empty((n_steps, count, n_state + n_kept - rows.predicted))
         for lane in range(count):
-            b = after[:, lane].tolist() + [0.0] * (rows.total - rows.kept)
+            b = after[:, lane].tolist() + scratch
             history = []
             for row in given[:, lane].tolist():
-                b[rows.plot : rows.change] = row
+                b[told] = row
                 step(b, 1)
-                history.append(b[:n_state] + b[rows.predicted : rows.kept])
+                history.append(b[:n_state] + b[results])
             if history:
                 trace[:, lane] = history
-                after[:, lane] = b[: rows.kept]
+                after[:, lane] = b[:n_kept]
         # What lies between state and results is not in the trace.
         skipped = rows.predicted - n_state
         outputs = {}
