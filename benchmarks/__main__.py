@@ -37,7 +37,7 @@ def machine_text(figures: dict[str, Any]) -> str:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="smaller jobs, within a minute")
+    parser.add_argument("--quick", action="store_true", help="smaller jobs, a minute or two")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures")
     parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="draw the curves")
     parser.add_argument(
