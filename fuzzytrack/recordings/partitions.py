@@ -178,7 +178,7 @@ def _keep_only(folder: Path, parts: set[Path]) -> None:
         if path.is_dir():
             shutil.rmtree(path)
         elif path not in parts:
-            path.unlink()
+            path.unlink(missing_ok=True)
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,11 @@ class TrackState:
         All numbers, laid out as `rows` says.
     rows : Rows
         The layout.
+
+    Raises
+    ------
+    ValueError
+        If `lanes` is not of the shape that `shape` and `rows` ask for.
     """
 
     time: Array | np.float64
@@ -52,8 +58,12 @@ class TrackState:
     rows: Rows
 
     def __post_init__(self) -> None:
-        # Compiled code takes the numbers as they lie.
-        object.__setattr__(self, "lanes", np.ascontiguousarray(self.lanes))
+        # Compiled code takes the numbers as they lie, and asks no more.
+        lanes = np.ascontiguousarray(self.lanes, dtype=np.float64)
+        expected = (self.rows.kept, math.prod(self.shape) // self.rows.n_axes)
+        if lanes.shape != expected:
+            raise ValueError(f"lanes: shape {lanes.shape}; plots of {self.shape} need {expected}")
+        object.__setattr__(self, "lanes", lanes)
 
     def _read(self, row: int, count: int) -> Array:
         return self.lanes[row : row + count].T.reshape(self.shape)

@@ -222,6 +222,15 @@ def test_compiled_streams_check_what_they_are_given():
         np.testing.assert_array_equal(FIXED.step(state, z, t).lanes, expected.lanes)
 
 
+def test_a_state_has_as_many_numbers_as_its_plots_need():
+    state = FIXED.start([0.0, 0.0], 0.0)
+    with pytest.raises(ValueError, match=r"lanes: shape \(\d+, 1\); plots of \(2,\) need"):
+        ft.TrackState(state.time, state.shape, state.lanes[:, :1], state.rows)
+    spread_out = np.asfortranarray(state.lanes)
+    again = ft.TrackState(state.time, state.shape, spread_out, state.rows)
+    assert again.lanes.flags.c_contiguous
+
+
 def test_a_compiled_tracker_pickles_and_stays_equal():
     FIXED.compile(2)
     state = FIXED.step(FIXED.start([0.0, 0.0], 0.0), [1.0, 1.0], 1.0)
