@@ -309,7 +309,7 @@ class DiesOnce:
 
 
 def chunk_files(folder):
-    return sorted((folder / "chunks").glob("*.npz"))
+    return sorted((folder / "chunks").glob("[!.]*.npz"))
 
 
 class Interrupt:
