@@ -58,8 +58,9 @@ class Ramps:
                 name = f"r{k}_{j}"
                 written += [
                     f"{name} = {products[slope]} - {low * slope!r}",
-                    f"{name} = {name} if {name} > 0.0 else 0.0",
-                    f"{name} = {name} if {name} < 1.0 else 1.0",
+                    # Told this way round, each compiles to one instruction.
+                    f"{name} = 0.0 if {name} < 0.0 else {name}",
+                    f"{name} = 1.0 if {name} > 1.0 else {name}",
                 ]
         for k, cells in enumerate(self.cells.values()):
             base, unit, weights = _weights(cells)

@@ -347,7 +347,7 @@ SHAPES = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=None)  # the first one imports scikit-fuzzy
+@settings(max_examples=300)  # the first one imports scikit-fuzzy
 @given(st.lists(SHAPES, min_size=1, max_size=4))
 def test_uncovered_stretches_are_where_all_grades_are_zero(shapes):
     sets = tuple(FuzzySet(str(k), name, tuple(p)) for k, (name, p) in enumerate(shapes))

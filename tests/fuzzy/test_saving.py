@@ -165,7 +165,6 @@ def rulebases(draw):
 
 @settings(
     max_examples=120,
-    deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 @given(rulebases())
@@ -263,7 +262,7 @@ def test_save_whole_or_not_at_all(tmp_path, monkeypatch):
 
 
 @given(st.data())
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 def test_exactly_one_cell_changes(data):
     text = rulebase_path("stiffness-damping").read_text()
     rules = loads_rulebase(text)

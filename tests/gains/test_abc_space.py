@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzytrack.gains import abc_preimages, fading_memory, from_abc, is_stable, to_abc
@@ -87,7 +87,6 @@ def test_as_many_preimages_as_real_poles():
 
 
 @given(unit, unit, st.floats(-0.999, 0.999))
-@settings(deadline=None)
 def test_the_polynomials_are_one(across, up, c):
     a, b = 2 * across, up * (4 - 4 * across)
     literal = np.poly(roots_of_the_recursion(*from_abc(a, b, c)))

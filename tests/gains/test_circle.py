@@ -76,7 +76,7 @@ def test_where_the_optimum_is_not_global_the_edge_is_at_rest_or_moving():
     assert at_rest.edge_cost == pytest.approx(100)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.floats(0.05, 0.8), st.floats(-6, -2.5), st.booleans())
 def test_the_optimum_on_the_circle_is_a_local_minimum(theta, exponent, gamma):
     weight = 10.0**exponent

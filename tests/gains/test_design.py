@@ -100,7 +100,7 @@ def test_known_gains_of_order_three(index, gains):
 
 
 @given(indices)
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_gains_are_those_of_the_steady_kalman_filter(index):
     for order, push in ((2, [0.5, 1]), (3, [0.5, 1, 1])):
         expected = kalman(index**2 * np.outer(push, push), order)[0]
@@ -108,7 +108,6 @@ def test_gains_are_those_of_the_steady_kalman_filter(index):
 
 
 @given(st.floats(1e-8, 1e4))
-@settings(deadline=None)
 def test_relations_of_the_gains(index):
     alpha, beta = kalata(index)
     assert beta**2 / (1 - alpha) == pytest.approx(index**2, rel=1e-6)
@@ -142,7 +141,7 @@ def test_gains_over_the_whole_range_of_numbers():
 
 
 @given(indices)
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_benedict_bordner_is_a_steady_kalman_filter(strength):
     """That of a target whose position and velocity jump together: Q of [1 1; 1 1]."""
     alpha, beta = kalman(strength**2 * np.ones((2, 2)), 2)[0]
@@ -175,7 +174,6 @@ def test_benedict_bordner_is_stable_up_to_its_end():
 
 
 @given(st.floats(0.001, 1))
-@settings(deadline=None)
 def test_critically_damped_poles_coincide(alpha):
     s = np.sqrt(1 - alpha)
     for branch, pole in (("lower", s), ("upper", -s)):
@@ -220,7 +218,6 @@ def test_fading_memory_is_discounted_least_squares(order, xi):
 
 
 @given(st.floats(0, 0.999))
-@settings(deadline=None)
 def test_fading_memory_has_all_poles_in_one_place(xi):
     pair, triple = fading_memory(xi), fading_memory(xi, 3)
     np.testing.assert_allclose(np.poly(poles(*pair)), np.poly([xi] * 2), atol=1e-14)

@@ -29,7 +29,7 @@ from fuzzytrack.gains import (
     velocity_index,
 )
 
-few = settings(max_examples=25, deadline=None)
+few = settings(max_examples=25)
 indices = st.floats(-3, 2).map(lambda exponent: 10.0**exponent)
 index_arrays = hnp.arrays(np.float64, 20, elements=indices)
 
@@ -334,7 +334,7 @@ def test_bounds_hold():
     assert inactive.gains == pytest.approx(optimal_gains(cost).gains, abs=1e-6)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.floats(0.1, 3), st.floats(0, 2), st.floats(0, 3), st.floats(0.5, 3), st.booleans())
 def test_no_other_filter_beats_the_search(velocity, acceleration, steady, dt, gamma):
     cost = TrackingCost(

@@ -18,7 +18,7 @@ from fuzzytrack.gains import (
 )
 
 OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "interval")
-few = settings(max_examples=12, deadline=None)
+few = settings(max_examples=12)
 shares = hnp.arrays(np.float64, (3, 24), elements=st.floats(0.03, 0.97))
 
 

@@ -3,7 +3,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzytrack.gains import (
@@ -158,7 +158,6 @@ def test_known_poles():
 
 
 @given(unit, unit, st.floats(-0.999, 0.999))
-@settings(deadline=None)
 def test_poles_are_the_eigenvalues_of_the_recursion(across, up, c):
     gains = from_abc(2 * across, up * (4 - 4 * across), c)
     computed = poles(*gains)

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzytrack.gains import (
@@ -45,7 +45,6 @@ def test_corners_of_the_published_limits():
 
 
 @given(positive, positive)
-@settings(deadline=None)
 def test_every_frequency_and_damping_give_a_stable_filter(omega0, zeta):
     alpha, beta = map(float, alpha_beta_from_w(omega0, zeta))
     assert alpha > 0
@@ -56,7 +55,6 @@ def test_every_frequency_and_damping_give_a_stable_filter(omega0, zeta):
 
 
 @given(st.floats(0.01, 30), st.floats(0.01, 30))
-@settings(deadline=None)
 def test_poles_of_the_recursion_lie_inside_the_unit_circle(omega0, zeta):
     alpha, beta = map(float, alpha_beta_from_w(omega0, zeta))
     transition = np.array([[1 - alpha, 1 - alpha], [-beta, 1 - beta]])  # of (x, T v), filtered
@@ -64,14 +62,12 @@ def test_poles_of_the_recursion_lie_inside_the_unit_circle(omega0, zeta):
 
 
 @given(st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
-@settings(deadline=None)
 def test_the_map_is_a_bijection(omega0, zeta):
     back = w_from_alpha_beta(*alpha_beta_from_w(omega0, zeta))
     assert back == pytest.approx((omega0, zeta), rel=1e-6)
 
 
 @given(st.floats(0.0, 1.0, exclude_min=True, exclude_max=True), st.floats(0.001, 0.999))
-@settings(deadline=None)
 def test_the_inverse_covers_the_whole_triangle(across, up):
     alpha, beta = 2 * across, up * (4 - 4 * across)
     if alpha < 1e-6 or 4 - 2 * alpha - beta < 1e-6:
@@ -93,7 +89,6 @@ def test_kalata_gains_lie_on_their_design_curve(index):
 
 
 @given(st.floats(0.01, 0.99))
-@settings(deadline=None)
 def test_design_curves(alpha):
     omega0, zeta = w_from_alpha_beta(alpha, benedict_bordner(alpha))
     assert zeta == pytest.approx(np.sqrt((1 + omega0**2) / 2), rel=1e-12)
@@ -106,7 +101,6 @@ def test_design_curves(alpha):
 
 
 @given(st.floats(0.01, 5), st.floats(0.05, 5))
-@settings(deadline=None)
 def test_where_alpha_exceeds_one(omega0, zeta):
     limit = (1 + omega0**2) / (2 * omega0)
     if abs(zeta - limit) > 1e-9:
@@ -127,7 +121,6 @@ def test_frequency_in_radians_per_second():
 
 
 @given(st.floats(0.001, 1), st.floats(0.05, 3), st.floats(0.1, 50))
-@settings(deadline=None)
 def test_poles_are_the_bilinear_image_of_the_continuous_ones(omega0, zeta, dt):
     s = np.roots([1, 2 * zeta * omega0, omega0**2]) * dt / 2
     alpha, beta = alpha_beta_from_w(omega0, zeta, dt)
@@ -168,7 +161,6 @@ def test_no_third_pole_is_the_alpha_beta_filter():
 @given(
     st.floats(0.01, 10), st.floats(0.05, 5), st.floats(0.01, 10), st.sampled_from([None, 0.5, 4.0])
 )
-@settings(deadline=None)
 def test_third_pole_there_and_back(omega0, zeta, omega3, dt):
     half = 1 if dt is None else dt / 2
     gains = alpha_beta_gamma_from_w(omega0, zeta, omega3, dt)
@@ -220,7 +212,6 @@ def test_known_values_of_matched_poles():
 
 
 @given(st.floats(0.001, 3), st.floats(0.01, 5), st.floats(0.1, 1))
-@settings(deadline=None)
 def test_matched_poles_are_sampled_continuous_ones(omega0, zeta, dt):
     alpha, beta = alpha_beta_from_s(omega0, zeta, dt)
     s = np.roots([1, 2 * zeta * omega0, omega0**2])

@@ -66,7 +66,7 @@ def test_pieces_equal_each_track_alone(name, n_axes):
     seed=st.integers(0, 1000),
     cuts=st.lists(st.integers(0, 80), max_size=6),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_any_cuts(n, n_tracks, seed, cuts):
     ids, t, z = recording(n, n_tracks, 2, seed)
     check_equal(FIXED, ids, t, z, sorted(min(cut, n) for cut in cuts))

@@ -83,7 +83,7 @@ def literal_bank(times, plots, sigma, alphas, selection, forget):
     return np.array(history).T
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(
     seed=st.integers(0, 2**32 - 1),
     selection=st.sampled_from(SELECTIONS),

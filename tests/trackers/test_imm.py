@@ -320,7 +320,7 @@ positive = st.floats(0.01, 100.0)
 probability = st.floats(0.0, 1.0)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     sigmas=st.tuples(positive, positive, positive),
     stays=st.tuples(probability, probability),

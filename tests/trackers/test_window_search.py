@@ -54,7 +54,7 @@ def literal_search(times, plots, window, alpha, grid):
     return predicted, alphas
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(
     seed=st.integers(0, 2**32 - 1),
     window=st.integers(2, 12),
