@@ -45,6 +45,7 @@ class GivenGains(GainScheduler):
     """Gains that come with each track and axis: α in place of sigma, β after Benedict & Bordner."""
 
     needs_sigma = True
+    uses_acceleration = False
 
     def kernel(self, n_axes):
         def given_gains(innovation, change, dt, sigma, memory):
@@ -58,6 +59,7 @@ class BuiltInTwoSpeed(GainScheduler):
     """Kernel of the example plug-in as a built-in one is written: selects, and no `max`."""
 
     needs_sigma = True
+    uses_acceleration = False
 
     threshold: float = 3.0
     hold: int = 4

@@ -245,6 +245,10 @@ def _check_kernel(scheduler: GainScheduler, n_axes: int) -> None:
                 f"{where}: gains and memory must be finite floats, got {answer}",
             )
             _expect(
+                answer[2] == 0.0 or scheduler.uses_acceleration,
+                f"{where}: gamma must be 0 unless uses_acceleration is set, got {answer[2]:g}",
+            )
+            _expect(
                 len(answer[4]) == len(memory),
                 f"{where}: memory must keep its length {len(memory)}, got {len(answer[4])}",
             )

@@ -1,5 +1,6 @@
 """Every scheduler and every tracker keeps its contract: one test for all."""
 
+import numpy as np
 import pytest
 
 import fuzzytrack as ft
@@ -72,6 +73,22 @@ def test_it_keeps_its_contract(name):
         check_scheduler(SCHEDULERS[name])
     else:
         check_tracker(TRACKERS[name])
+
+
+@pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])
+def test_missed_plots_swing_no_track_up(name):
+    """A coasted turn goes wrong by 100 m/s, and a start from noise as much; nothing may add up."""
+    random = np.random.default_rng(3)
+    times = np.cumsum(random.uniform(0.5, 2.0, 100))
+    angle = np.outer(times, random.uniform(-0.1, 0.1, 30))
+    truth = 1e3 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    plots = truth + random.normal(0.0, 10.0, truth.shape)
+    plots[random.random((100, 30)) < 0.3] = np.nan
+    tracker = TRACKERS.get(name) or ft.AlphaBetaTracker(SCHEDULERS[name])
+    errors = np.abs(tracker.run(times, plots, 10.0).filtered - truth)[20:]
+    assert errors.max() < 3e3
+    # Gains that fall for ever lose a turn.
+    assert np.median(errors) < (400.0 if name == "linear-combination" else 60.0)
 
 
 def test_nothing_is_left_out():

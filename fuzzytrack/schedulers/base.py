@@ -34,12 +34,15 @@ class GainScheduler(ABC):
         Whether the kernel reads the standard deviation of the plot.
     sees_every_step : bool
         Whether the kernel also follows the steps of a track that need no gains; see `kernel`.
+    uses_acceleration : bool
+        Whether gamma can be other than 0. Without acceleration a tracker has less to do.
     """
 
     source: ClassVar[str] = ""
     coupled: bool = False
     needs_sigma: bool = False
     sees_every_step: bool = False
+    uses_acceleration: bool = True
 
     @abstractmethod
     def kernel(self, n_axes: int) -> Kernel:
@@ -55,8 +58,9 @@ class GainScheduler(ABC):
 
         and returns ``(alpha, beta, gamma, phi, memory)``: the gains, the retention of acceleration
         (1 in every classical filter), and the new memory, of the same length. Gamma is the one
-        whose acceleration gain is γ/(2T²). Of a coupled scheduler the first, second and fourth
-        arguments are tuples with one float an axis.
+        whose acceleration gain is γ/(2T²); unless the scheduler `uses_acceleration`, it is 0 and
+        phi is dropped. Of a coupled scheduler the first, second and fourth arguments are tuples
+        with one float an axis.
 
         Where a plot is missing, or a two-point start still waits for the second one, the function
         is called with zeros (and a sigma of 1) and its answer is dropped; so NaN never arrives as

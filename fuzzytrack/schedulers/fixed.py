@@ -46,6 +46,11 @@ class FixedGains(GainScheduler):
             object.__setattr__(self, name, float(finite(name, getattr(self, name))))
         stable_gains(self.alpha, self.beta, self.gamma)
 
+    @property
+    def uses_acceleration(self) -> bool:  # type: ignore[override]
+        """Whether γ is not 0."""
+        return self.gamma != 0.0
+
     def kernel(self, n_axes: int) -> Kernel:
         """Constant gains; see `GainScheduler.kernel`."""
         alpha, beta, gamma = self.alpha, self.beta, self.gamma

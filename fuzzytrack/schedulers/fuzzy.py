@@ -106,6 +106,11 @@ class FuzzyScheduler(GainScheduler):
         return self.opens or self.normalization.sees_every_step
 
     @property
+    def uses_acceleration(self) -> bool:  # type: ignore[override]
+        """Whether the rule base gives γ."""
+        return "gamma" in self.rules.output_names
+
+    @property
     def opens(self) -> bool:
         """Whether a new track has the gains of a growing memory first."""
         return any(key == "opening" for key, _ in self.rules.scheduler)

@@ -63,8 +63,15 @@ class InnovationScheduler(GainScheduler):
     -----
     Kim & Lee, Eqs. 5 to 17. The default has no manoeuvre's size in it but a floor, does not depend
     on units and does not latch up. Where the target's acceleration is known, fixed gains for it are
-    as good. The memory is the number of squares kept and the squares, the newest first; missed
-    plots are passed over.
+    as good.
+
+    T is the time since the last plot that was seen, and β is for a step of that length: the paper
+    misses no plot. With the last time step alone, the larger innovations after a gap pass for a
+    manoeuvre, the gains turn too hard for the gap, and some tracks swing up without end.
+
+    The memory is the number of squares kept, the number of plots up to 2, the time since the last
+    one (s), and the squares, the newest first. The first two plots start a track; neither has an
+    innovation to learn from.
 
     Examples
     --------
@@ -75,6 +82,8 @@ class InnovationScheduler(GainScheduler):
 
     source: ClassVar[str] = "Kim & Lee, adaptive alpha-beta tracker, Eqs. 5-17"
     needs_sigma = True
+    sees_every_step = True
+    uses_acceleration = False
 
     sigma_d: float = 15.0
     window: int = 8
@@ -112,8 +121,8 @@ class InnovationScheduler(GainScheduler):
         return cls(sigma_d, window, q_scale, extra_term=True, partial=False, floor="negative")
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """No innovations."""
-        return (0.0,) * (1 + self.window + self.extra_term)
+        """No plots, no innovations."""
+        return (0.0,) * (3 + self.window + self.extra_term)
 
     def kernel(self, n_axes: int) -> Kernel:
         """Mean square to tracking index to gains; see `GainScheduler.kernel`."""
@@ -126,9 +135,8 @@ class InnovationScheduler(GainScheduler):
         variance_q = 1.0 if self.q_scale is None else self.q_scale**2
         at_least = self.floor == "max"
 
-        def acceleration_variance(s: float, r: float, dt: float) -> float:
-            """σ_v² from S; negative where the noise alone explains it."""
-            square = dt * dt
+        def acceleration_variance(s: float, r: float, square: float) -> float:
+            """σ_v² from S and T²; negative where the noise alone explains it."""
             if literal:
                 alpha, _ = kalata_gains(math.sqrt(variance_d / r) * square)
                 excess = 4.0 * (s - r / (1.0 - alpha)) / (square * square)
@@ -143,18 +151,25 @@ class InnovationScheduler(GainScheduler):
         def innovation_variance(
             innovation: float, change: float, dt: float, sigma: float, memory: Memory
         ) -> tuple[float, float, float, float, Memory]:
-            count = memory[0] + 1.0 if memory[0] < full else full
-            squares = (innovation * innovation, *memory[1:-1])
+            seen = sigma != math.inf
+            count, plots, span = memory[0], memory[1], memory[2] + dt
+            counts = seen & (plots > 1.0)
+            one_more = count + 1.0 if count < full else full
+            count = one_more if counts else count
+            squares = (innovation * innovation, *memory[3:-1]) if counts else memory[3:]
             total = 0.0
             for square in squares:
                 total = total + square
             # Until the window is full, the divisor falls short in the same proportion.
-            s = total / (divisor * (count / full))
-            r = sigma * sigma
-            variance = acceleration_variance(s, r, dt)
+            s = total / (divisor * ((count if count > 0.0 else 1.0) / full))
+            r = sigma * sigma if seen else 1.0
+            variance = acceleration_variance(s, r, span * span)
             low = variance < variance_d if at_least else variance < 0.0
             variance = variance_d if low or count < least else variance
-            alpha, beta = kalata_gains(math.sqrt(variance / r) * dt * dt)
-            return alpha, beta, 0.0, 1.0, (count, *squares)
+            alpha, beta = kalata_gains(math.sqrt(variance / r) * span * span)
+            plots = plots + 1.0 if seen & (plots < 2.0) else plots
+            after = (count, plots, 0.0 if seen else span, *squares)
+            # The tracker divides by the last time step.
+            return alpha, beta * (dt / span), 0.0, 1.0, after
 
         return innovation_variance

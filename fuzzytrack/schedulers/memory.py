@@ -49,6 +49,7 @@ class BenedictBordner(GainScheduler):
     """
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M1, Eqs. 23a-23b; Benedict & Bordner (1962)"
+    uses_acceleration = False
 
     alpha: float
 
@@ -100,6 +101,7 @@ class GrowingMemory(GainScheduler):
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M2, Eqs. 24a-24b"
     sees_every_step = True
+    uses_acceleration = False
 
     limit: float | None = None
 
@@ -155,6 +157,7 @@ class LinearCombination(GainScheduler):
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M3, Eq. 25"
     sees_every_step = True
+    uses_acceleration = False
 
     alpha: float = 0.05
     weight: float = 0.05

@@ -60,6 +60,7 @@ class QualityGains(GainScheduler):
 
     source: ClassVar[str] = "Zhang & Jiang, quality factor; cap 10 (published: 30)"
     sees_every_step = True
+    uses_acceleration = False
 
     cap: float = 10.0
     drop: float = 3.0

@@ -130,6 +130,7 @@ def _advance(
     )
     first_count = 1.0 if two_point else 2.0
     every_step = scheduler.sees_every_step
+    accelerating = scheduler.uses_acceleration
 
     def advance(b: Any, i: int, own: Any, dt: float, plots: float) -> None:
         rate = 1.0 / dt
@@ -145,7 +146,9 @@ def _advance(
 
         for j in range(n_axes):
             at = j * stride + i
-            prediction = b[x_row + at] + b[v_row + at] * dt + b[a_row + at] * (0.5 * dt * dt)
+            prediction = b[x_row + at] + b[v_row + at] * dt
+            if accelerating:
+                prediction = prediction + b[a_row + at] * (0.5 * dt * dt)
             own[n_axes + j] = prediction
             own[2 * n_axes + j] = own[j] - prediction if update else 0.0
 
@@ -155,16 +158,20 @@ def _advance(
 
         for j in range(n_axes):
             at = j * stride + i
-            last, v, a = b[last_row + at], b[v_row + at], b[a_row + at]
+            last, moved = b[last_row + at], b[v_row + at]
             z, prediction, e = own[j], own[n_axes + j], own[2 * n_axes + j]
-            moved = v + a * dt
+            if accelerating:
+                a = b[a_row + at]
+                moved = moved + a * dt
+                a_new = phi * (a + (gamma * (0.5 * rate * rate)) * e) if running else 0.0
+                b[a_row + at] = a_new if seen else a
+            elif not settled:
+                b[a_row + at] = 0.0
             start = (z - last) / gap if plots == 1.0 else 0.0
             x_new = prediction + alpha * e if running else z
             v_new = moved + (beta * rate) * e if running else start
-            a_new = phi * (a + (gamma * (0.5 * rate * rate)) * e) if running else 0.0
             b[x_row + at] = x_new if seen else prediction
             b[v_row + at] = v_new if seen else moved
-            b[a_row + at] = a_new if seen else a
             b[last_row + at] = z if seen else last
             if results:
                 b[prediction_row + at] = prediction if running else nan

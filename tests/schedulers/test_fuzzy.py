@@ -70,6 +70,7 @@ def with_gamma(rules, high=0.01):
 
 def test_direct_gains_with_gamma_in_any_order(rules):
     scheduler = ft.FuzzyScheduler(with_gamma(rules))
+    assert scheduler.uses_acceleration
     alpha, beta, gamma, *_ = scheduler.kernel(1)(0.0, 1.0, 1.0, 1.0, (0.0,))
     assert (alpha, beta, gamma) == pytest.approx((0.89, 0.35, 0.005))
     check_scheduler(scheduler)

@@ -57,18 +57,21 @@ def test_it_is_the_recursion_of_the_paper(scheduler):
     plots = np.where(times > 60, (times - 60) ** 2, 0.0) + sigma * random.normal(size=80)
     plots[[10, 11, 30]] = np.nan
     result = AlphaBetaTracker(scheduler).run(times, plots, sigma)
-    asked = ~np.isnan(result.innovation)
-    dts = np.diff(times, prepend=0.0)
-    expected = by_the_paper(result.innovation[asked], dts[asked], sigma[asked], scheduler)
+    asked, seen = ~np.isnan(result.innovation), ~np.isnan(plots)
+    # Since the last plot, not since the last time at which there could have been one.
+    spans = np.diff(times[seen])[1:]
+    expected = by_the_paper(result.innovation[asked], spans, sigma[asked], scheduler)
     np.testing.assert_allclose(result.gains.alpha[asked], expected, rtol=1e-8)
-    rest = np.sqrt(1 - expected)
-    np.testing.assert_allclose(result.gains.beta[asked], 2 * (1 - rest) ** 2, rtol=1e-7)
+    beta = 2 * (1 - np.sqrt(1 - expected)) ** 2
+    steps = np.diff(times, prepend=0.0)[asked]
+    assert (steps < spans).sum() == 2
+    np.testing.assert_allclose(result.gains.beta[asked] / steps, beta / spans, rtol=1e-7)
 
 
 @given(st.floats(1.01, 1e4), st.floats(0.1, 10.0), st.floats(0.5, 500.0))
 def test_the_default_gain_is_one_less_the_share_of_noise(ratio, dt, sigma):
     kernel = InnovationScheduler(1e-9, window=1).kernel(1)
-    alpha, *_ = kernel(sigma * np.sqrt(ratio), 0.0, dt, sigma, (0.0, 0.0))
+    alpha, *_ = kernel(sigma * np.sqrt(ratio), 0.0, dt, sigma, (0.0, 2.0, 0.0, 0.0))
     assert alpha == pytest.approx(1 - 1 / ratio, rel=1e-6)
 
 

@@ -22,6 +22,7 @@ class TwoSpeed(GainScheduler):
 
     source: ClassVar[str] = "example plug-in"
     needs_sigma: ClassVar[bool] = True
+    uses_acceleration: ClassVar[bool] = False
 
     threshold: float = 3.0
     hold: int = 4
