@@ -316,10 +316,9 @@ def _conversion(rules: RuleBase) -> Conversion:
 
         def from_w(outputs: tuple[float, ...]) -> tuple[float, float, float]:
             # `fuzzytrack.gains.wdomain.bilinear` with a single division.
-            omega0 = outputs[stiffness]
-            twice, square = 2.0 * outputs[damping] * omega0, omega0 * omega0
-            inverse = 1.0 / (1.0 + twice + square)
-            return 2.0 * twice * inverse, 4.0 * square * inverse, 0.0
+            omega0, zeta = outputs[stiffness], outputs[damping]
+            shared = 4.0 * omega0 / (1.0 + omega0 * (zeta + zeta + omega0))
+            return zeta * shared, omega0 * shared, 0.0
 
         return from_w
     first, second = place["alpha"], place["beta"]

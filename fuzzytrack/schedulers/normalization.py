@@ -31,6 +31,9 @@ Normalize = Callable[[Any, Any, float, Any, Memory], tuple[tuple[float, ...], Me
 #: ``feedback(memory, alpha, beta, gamma, dt, sigma) -> memory``
 Feedback = Callable[[Memory, float, float, float, float, Any], Memory]
 
+#: What is smaller counts as nothing; single precision has it, too.
+_LEAST = 1e-30
+
 
 class Normalization(ABC):
     """Turns innovation and change of observation into dimensionless signals.
@@ -84,7 +87,8 @@ def relative(part: float, whole: float) -> float:
     """``part`` over the larger magnitude of the two, in [-1, 1]; 0 if both are 0."""
     size, other = abs(part), abs(whole)
     largest = size if size > other else other
-    return part / largest if largest > 0.0 else 0.0
+    # Never 0: a maximum takes less time than a choice.
+    return part / (largest if largest > _LEAST else _LEAST)
 
 
 @normalizations.register("chan")
