@@ -11,8 +11,12 @@ import fuzzytrack as ft
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# What peers are warned of is not ours to mend.
-pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+pytestmark = [
+    # What peers are warned of is not ours to mend.
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+    # What takes long is done once, by one process.
+    pytest.mark.xdist_group("benchmarks"),
+]
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -12,6 +12,8 @@ def test_there_are_examples():
     assert EXAMPLES
 
 
+# Other tests cover what it uses, with less of it; watched, it would take three times as long.
+@pytest.mark.no_cover
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_example_runs(path, monkeypatch):
     pytest.importorskip("matplotlib")

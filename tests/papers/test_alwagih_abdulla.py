@@ -24,6 +24,9 @@ from fuzzytrack.papers.alwagih_abdulla_tables import (
 
 RUNS = 120
 
+# What takes long is done once, by one process.
+pytestmark = pytest.mark.xdist_group("alwagih_abdulla")
+
 
 @pytest.fixture(scope="module")
 def found():

@@ -9,6 +9,9 @@ from fuzzytrack.papers import reproduce
 
 RUNS = 400
 
+# What takes long is done once, by one process.
+pytestmark = pytest.mark.xdist_group("kim_lee")
+
 
 @pytest.fixture(scope="module")
 def found():

@@ -16,6 +16,9 @@ from fuzzytrack.testbed.published import MANEUVERS, llinas_maneuver
 from fuzzytrack.testbed.scenario import PlotNoise, Scenario
 
 RUNS = 80
+
+# What takes long is done once, by one process.
+pytestmark = pytest.mark.xdist_group("llinas")
 T1, T2, T3, T4, T5 = field.trackers()
 
 

@@ -10,6 +10,9 @@ from fuzzytrack.papers import njonjo, reproduce
 
 RUNS = 40
 
+# What takes long is done once, by one process.
+pytestmark = pytest.mark.xdist_group("njonjo")
+
 
 @pytest.fixture(scope="module")
 def found():
