@@ -18,6 +18,9 @@ __all__ = ["scan", "single"]
 
 SECTION = "Streaming (µs a step)"
 UNIT = "µs"
+#: Asked of one step with fuzzy gains (µs), on a machine on which those others took so long.
+LIMIT = 3.0
+THERE = {"FilterPy GHFilter": 2.6, "FilterPy KalmanFilter": 13.5, "Stone Soup Kalman": 210.0}
 
 
 def _stream(tracker: Any, plots: Any) -> Callable[[], Any]:
@@ -60,7 +63,7 @@ def single(scale: Scale) -> list[Row]:
     ours = fuzzy.median * each
     rows.insert(
         0,
-        Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, target=Target("<=", 3.0),
+        Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, target=Target("<=", LIMIT),
             note="One plot after the other through `step`, which checks them."),
     )  # fmt: skip
     for name in (name for name in makers if name in found):
@@ -74,8 +77,9 @@ def single(scale: Scale) -> list[Row]:
             )  # fmt: skip
         rows.append(
             Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, name, theirs,
-                ratio(found[name], fuzzy),
-                note=f"{name} is not the same filter: it is what a user would use else.")
+                ratio(found[name], fuzzy), Target(">=", round(THERE[name] / LIMIT, 2)),
+                note=f"{name} is not the same filter: it is what a user would use else. On the "
+                f"machine of the targets it took {THERE[name]:g} µs.")
         )  # fmt: skip
     return rows
 

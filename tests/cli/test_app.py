@@ -11,7 +11,7 @@ from fuzzytrack.cli.app import COMMANDS, load_command
 from fuzzytrack.errors import PluginWarning
 from fuzzytrack.trackers.catalog import CatalogEntry
 
-MAIN = [sys.executable, "-c", "from fuzzytrack.cli import main; main()"]
+MAIN = [sys.executable, "-m", "fuzzytrack"]
 
 
 def command(*words, **options):

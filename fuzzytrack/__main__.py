@@ -1,0 +1,5 @@
+"""``python -m fuzzytrack``: the command line."""
+
+from fuzzytrack.cli import main
+
+main()
