@@ -15,11 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["compiled", "entry_point", "fingerprint", "own_numbers", "use_wide_vectors"]
+__all__ = [
+    "compiled", "entry_point", "fingerprint", "own_numbers", "promise_independent_turns",
+    "use_wide_vectors",
+]  # fmt: skip
 
 _LONG_TUPLE = 16
 #: How functions are compiled and named here; what another scheme left on disk is not for us.
-_SCHEME = 3
+_SCHEME = 4
 
 
 class _UnknownContentError(Exception):
@@ -31,6 +34,16 @@ def use_wide_vectors() -> None:
 
     Compilers shun those of 512 bits, since other code on the processor may slow down for them; a
     batch of tracks gains more. In plain Python, and with narrower registers, it does nothing.
+    """
+
+
+def promise_independent_turns() -> None:
+    """Promise that no turn of the caller's loops touches what another turn does.
+
+    Then two vectors go through a turn at a time, and while one waits for a division the other is
+    worked on; the compiler does not find out by itself, since all rows lie in one buffer. It is
+    called after the loops, whose last statement must not be a call: the branch back would get lost
+    with the check of how the call ended. In plain Python it does nothing.
     """
 
 
@@ -154,6 +167,10 @@ def _rebuilt(content: _Content) -> FunctionType:
 def _prepared(value: Any, dtype: type) -> Any:
     if value is use_wide_vectors:
         return _wide_vectors()
+    if value is promise_independent_turns:
+        from fuzzytrack.trackers.loops import mark_loops
+
+        return mark_loops
     if value is own_numbers:
         return _own_numbers(dtype)
     if isinstance(value, FunctionType):

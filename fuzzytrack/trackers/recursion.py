@@ -20,7 +20,11 @@ from collections.abc import Callable
 from typing import Any
 
 from fuzzytrack.schedulers.base import GainScheduler
-from fuzzytrack.trackers.native import own_numbers, use_wide_vectors
+from fuzzytrack.trackers.native import (
+    own_numbers,
+    promise_independent_turns,
+    use_wide_vectors,
+)
 from fuzzytrack.trackers.rows import Rows
 
 __all__ = ["steady_function", "step_function"]
@@ -199,9 +203,13 @@ def _take(own: Any, n_axes: int, source: Any, start: int, stride: int) -> None:
 
 
 def _give(own: Any, n_axes: int, target: Any, start: int) -> None:
-    """Hand the predictions out."""
-    for j in range(n_axes):
+    """Hand the predictions out, but for that of the last axis."""
+    for j in range(n_axes - 1):
         target[start + j] = own[n_axes + j]
+
+
+def _no_promise() -> None:
+    """Lanes of several axes share the memory of their `own_numbers`."""
 
 
 def step_function(
@@ -258,7 +266,8 @@ def steady_function(
         by side.
     """
     advance = _advance(scheduler, rows, True, stride, settled=True, results=results)
-    n_axes, size = rows.n_axes, 5 * rows.n_axes
+    n_axes, size, last = rows.n_axes, 5 * rows.n_axes, rows.n_axes - 1
+    promise = promise_independent_turns if n_axes == 1 else _no_promise
 
     def steady(b: Any, count: int, dt: float, plots: Any, predicted: Any) -> None:
         use_wide_vectors()
@@ -267,5 +276,7 @@ def steady_function(
             _take(own, n_axes, plots, i * n_axes, 1)
             advance(b, i, own, dt, 2.0)
             _give(own, n_axes, predicted, i * n_axes)
+            predicted[i * n_axes + last] = own[n_axes + last]
+        promise()
 
     return steady

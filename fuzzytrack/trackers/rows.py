@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 __all__ = ["BLOCK", "OUTPUTS", "Rows", "aligned"]
 
-#: Lanes a block, and numbers between the rows of its buffer: whole vectors of 64 bytes, single
-#: precision included. A few rows of it stay clear of one another in the cache, where distances
-#: count by the remainder of 4,096 bytes.
-BLOCK = 240
+#: Lanes a block, and numbers between the rows of its buffer: whole pairs of vectors of 64 bytes,
+#: single precision included. A few rows of it stay clear of one another in the cache, where
+#: distances count by the remainder of 4,096 bytes.
+BLOCK = 288
 
 #: What a run can write down, in this order.
 OUTPUTS = (
