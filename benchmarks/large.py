@@ -112,7 +112,7 @@ def cluster(
     with (
         LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, memory_limit=0,
-            dashboard_address=None,
+            dashboard_address=":0",
         ) as workers,
         Client(workers) as client,
     ):  # fmt: skip

@@ -185,7 +185,8 @@ def _parquet_types(file: str) -> dict[str, Any]:
     with open(file, "rb") as stream:
         try:
             schema = arrow.parquet.read_schema(stream)
-        except arrow.ArrowException as error:
+        # Of a page that is broken, pyarrow says so by an OSError.
+        except (arrow.ArrowException, OSError) as error:
             raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
     return dict(zip(checked_names(schema.names, file), schema.types, strict=True))
 
@@ -311,7 +312,8 @@ def _parquet_pieces(
                 yield _batch_table(file, batch, kinds, np.arange(first, first + batch.num_rows))
                 first += batch.num_rows
                 progress((first - 1) / total)
-        except arrow.ArrowException as error:
+        # Of a page that is broken, pyarrow says so by an OSError.
+        except (arrow.ArrowException, OSError) as error:
             raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
 
 

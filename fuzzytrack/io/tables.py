@@ -369,7 +369,8 @@ def _read_parquet(
             names = checked_names(source.schema_arrow.names, file)
             columns = [Column(file, name, kind) for name, kind in wanted(names).items()]
             data = source.read([column.name for column in columns])
-        except arrow.ArrowException as error:
+        # Of a page that is broken, pyarrow says so by an OSError.
+        except (arrow.ArrowException, OSError) as error:
             raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
     rows = np.arange(1, data.num_rows + 1)
     for column in columns:

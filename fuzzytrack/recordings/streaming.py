@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.pieces import Piece
 from fuzzytrack.trackers.lanes import LaneTracker, announce
-from fuzzytrack.trackers.result import KEPT
+from fuzzytrack.trackers.result import checked_keep
 from fuzzytrack.trackers.rows import Rows
 from fuzzytrack.trackers.state import TrackState
 
@@ -46,7 +46,7 @@ def run_iter(
     pieces: Iterable[Piece],
     *,
     sigma: float | None = None,
-    keep: tuple[str, ...] | None = None,
+    keep: Sequence[str] | None = None,
 ) -> Iterator[TrackedPiece]:
     """Run a tracker over many tracks, piece by piece.
 
@@ -59,7 +59,7 @@ def run_iter(
         piece, in order of time. See `fuzzytrack.io.read_pieces`.
     sigma : float, optional
         Standard deviation of the plots (m).
-    keep : tuple of str, optional
+    keep : sequence of str, optional
         Which outputs to keep, of predicted, filtered, velocity, acceleration, innovation and gains;
         all unless given.
 
@@ -116,13 +116,10 @@ class OpenTracks:
         self,
         tracker: LaneTracker,
         sigma: float | None = None,
-        keep: tuple[str, ...] | None = None,
+        keep: Sequence[str] | None = None,
     ) -> None:
-        for name in keep or ():
-            if name not in KEPT:
-                raise ValueError(f"keep: unknown {name!r}; any of {', '.join(KEPT)}")
         self.tracker, self.sigma = tracker, sigma
-        self._keep = KEPT if keep is None else keep
+        self._keep = checked_keep(keep)
         self._slot: dict[str, int] = {}
         self._store = _Store()
 

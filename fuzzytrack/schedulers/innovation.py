@@ -14,9 +14,14 @@ __all__ = ["InnovationScheduler"]
 FLOORS = ("max", "negative")
 LONGEST_WINDOW = 64
 
+# A noise of 1e-15 m, steps of 3e-8 s: what is less would be divided by 0.
+_LEAST_VARIANCE, _LEAST_SQUARE = 1e-30, 1e-15
+_LARGEST_INDEX = 10.0
+
 
 def kalata_gains(index: float) -> tuple[float, float]:
-    """α and β at a tracking index >= 0; see `fuzzytrack.gains.kalata`."""
+    """α and β at a tracking index >= 0, 10 at most; see `fuzzytrack.gains.kalata`."""
+    index = index if index < _LARGEST_INDEX else _LARGEST_INDEX
     root = math.sqrt(index)
     q = 2.0 * root / (root + math.sqrt(index + 8.0))
     return q * (2.0 - q), 2.0 * q * q
@@ -67,7 +72,9 @@ class InnovationScheduler(GainScheduler):
 
     T is the time since the last plot that was seen, and β is for a step of that length: the paper
     misses no plot. With the last time step alone, the larger innovations after a gap pass for a
-    manoeuvre, the gains turn too hard for the gap, and some tracks swing up without end.
+    manoeuvre, the gains turn too hard for the gap, and some tracks swing up without end. Nor is λ
+    ever more than 10 (α 0.979, β 1.459), of which the paper says nothing: beyond it a pole nears
+    -1, and after one plot far off the track would ring on, for as long as S is large.
 
     The memory is the number of squares kept, the number of plots up to 2, the time since the last
     one (s), and the squares, the newest first. The first two plots start a track; neither has an
@@ -163,10 +170,14 @@ class InnovationScheduler(GainScheduler):
             # Until the window is full, the divisor falls short in the same proportion.
             s = total / (divisor * ((count if count > 0.0 else 1.0) / full))
             r = sigma * sigma if seen else 1.0
-            variance = acceleration_variance(s, r, span * span)
+            r = r if r > _LEAST_VARIANCE else _LEAST_VARIANCE
+            span_squared = span * span
+            span_squared = span_squared if span_squared > _LEAST_SQUARE else _LEAST_SQUARE
+            variance = acceleration_variance(s, r, span_squared)
             low = variance < variance_d if at_least else variance < 0.0
             variance = variance_d if low or count < least else variance
-            alpha, beta = kalata_gains(math.sqrt(variance / r) * span * span)
+            index = math.sqrt(variance / r) * span_squared
+            alpha, beta = kalata_gains(index)
             plots = plots + 1.0 if seen & (plots < 2.0) else plots
             after = (count, plots, 0.0 if seen else span, *squares)
             # The tracker divides by the last time step.

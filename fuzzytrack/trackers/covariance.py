@@ -254,10 +254,14 @@ def _check_whole(result: TrackResult, first: NDArray[np.int_], index: NDArray[np
 def _seen(result: TrackResult) -> Mask:
     """Where a plot counted: for a coupled tracker, with all its coordinates."""
     seen = ~np.isnan(result.measured)
+    whole = seen.all(axis=-1, keepdims=True) if seen.ndim > 1 else seen
+    if result.state is None and (seen != whole).any():
+        raise ValueError(
+            "result: a plot lacks a coordinate, and without its state (as from run_tracks) nobody "
+            "knows whether the others counted; run that track by itself"
+        )
     coupled = result.state is not None and result.state.rows.n_axes > 1
-    if coupled:
-        seen &= seen.all(axis=-1, keepdims=True)
-    return seen
+    return seen & whole if coupled else seen
 
 
 def _first(mask: Mask) -> NDArray[np.int_]:

@@ -52,6 +52,8 @@ class Hop:
     def __call__(self, state: TrackState, z: Any, t: Any, sigma: Any) -> TrackState | None:
         """Next state, or None where there is more to say or do."""
         if type(z) is not np.ndarray:
+            if isinstance(z, np.ma.MaskedArray):
+                return None
             z = np.array(z, dtype=_FLOAT)
         if sigma is None:
             sigma = math.nan

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.trackers.hop import Hop
-from fuzzytrack.trackers.result import KEPT, TrackResult
+from fuzzytrack.trackers.result import TrackResult, checked_keep
 from fuzzytrack.trackers.rows import Rows
 from fuzzytrack.trackers.runner import InfinitePlotError, Recursion, Runner
 from fuzzytrack.trackers.state import Gains, TrackState, spread
@@ -25,6 +25,8 @@ __all__ = ["LaneTracker", "announce", "runner"]
 Array = NDArray[np.float64]
 
 GAINS = ("alpha", "beta", "gamma")
+#: Shapes of plots for which a tracker keeps a short way to the next state.
+_HOPS = 64
 
 
 class LaneTracker(ABC):
@@ -106,15 +108,18 @@ class LaneTracker(ABC):
             `threads` is less than 1, `dtype` is another, or the tracker works with numbers that
             are too large or too small for it.
         """
-        wanted = _check_keep(keep)
+        wanted = checked_keep(keep)
         _check_threads(threads)
-        plots = _as_plots(z, dtype)
-        times = np.asarray(t, dtype=np.float64)
+        plots, times = _as_plots(z, dtype), _as_times(t, state)
         layout = _Layout.of(plots, self.coupled)
-        dts = _time_steps(times, plots.shape, state)
         core = runner(self, layout.lane_axes)
         _check_state(plots, state, core.rows)
-        sigmas = layout.to_lanes(self._sigma(sigma, plots))
+        dts = _time_steps(times, plots.shape, state)
+        deviation = self._sigma(sigma, plots)
+        if plots.dtype == np.float32:
+            _check_single("t: a time step of", dts, times)
+            _check_single("sigma:", deviation, plots)
+        sigmas = layout.to_lanes(deviation)
         try:
             after, raw = core(
                 None if state is None else state.lanes,
@@ -180,6 +185,8 @@ class LaneTracker(ABC):
         n_axes : int
             Axes of the plots.
         """
+        if operator.index(n_axes) < 1:
+            raise ValueError(f"n_axes must be at least 1, got {n_axes}")
         runner(self, n_axes if self.coupled else 1).compile()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -192,6 +199,8 @@ class LaneTracker(ABC):
 
     def _new_hop(self, state: TrackState) -> Hop | None:
         """Short way from states like this one, if the tracker is compiled."""
+        if len(self._hops) >= _HOPS:
+            self._hops.clear()
         layout = _Layout.of(np.empty((0, *state.shape)), self.coupled)
         core = runner(self, layout.lane_axes)
         if core.hop is None:
@@ -202,7 +211,8 @@ class LaneTracker(ABC):
     def _one_step(
         self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
     ) -> TrackState:
-        plots, times = np.asarray(z, dtype=np.float64)[None], np.asarray(t, dtype=np.float64)[None]
+        plots = _as_plots(z, np.float64)[None]
+        times = _as_times(np.asarray(t)[None], state)
         layout = _Layout.of(plots, self.coupled)
         if np.isinf(plots).any():
             raise _infinite_plot(plots)
@@ -346,24 +356,35 @@ class _Layout:
         return spread(values, self.shape, self.lane_axes)
 
 
-def _check_keep(keep: Sequence[str] | None) -> tuple[str, ...]:
-    if keep is None:
-        return KEPT
-    # A word is a sequence of letters.
-    names = (keep,) if isinstance(keep, str) else tuple(keep)
-    for name in names:
-        if name not in KEPT:
-            raise ValueError(f"keep: unknown {name!r}; out of {', '.join(KEPT)}")
-    return tuple(name for name in KEPT if name in names)
-
-
 def _as_plots(z: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
     kind = np.dtype(dtype)
     if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise ValueError(f"dtype must be float64 or float32, got {kind}")
+    if isinstance(z, np.ma.MaskedArray):
+        z = np.ma.filled(z.astype(np.float64), np.nan)
+    given = _real("z", z)
     # What is too large for it is found as an infinite plot.
     with np.errstate(over="ignore"):
-        return np.asarray(z, dtype=kind)
+        return np.asarray(given, dtype=kind)
+
+
+def _as_times(t: ArrayLike, state: TrackState | None) -> Array:
+    times = np.asarray(_real("t", t), dtype=np.float64)
+    if not (state is None or isinstance(state, TrackState)):
+        raise TypeError(f"state must be a TrackState, got {type(state).__name__}")
+    if state is None or times.ndim != 1 or not np.ndim(state.time):
+        return times
+    # Tracks that had times of their own go on with common ones.
+    common = times.reshape(-1, *(1,) * np.ndim(state.time))
+    return np.broadcast_to(common, (len(times), *np.shape(state.time)))
+
+
+def _real(name: str, values: ArrayLike) -> NDArray[Any]:
+    given = np.asarray(values)
+    if given.dtype.kind in "mMc":
+        seconds = "seconds as " if name == "t" else ""
+        raise ValueError(f"{name}: needs {seconds}real numbers, got {given.dtype}")
+    return given
 
 
 def _check_threads(threads: int | None) -> None:
@@ -375,6 +396,18 @@ def _infinite_plot(plots: Array) -> DataError:
     place = tuple(int(k) for k in np.argwhere(np.isinf(plots))[0])
     large = " (or too large for float32)" if plots.dtype == np.float32 else ""
     return DataError(f"z: infinite plot{large} at index {place}; use NaN for a missed one")
+
+
+def _check_single(what: str, values: Array, needed: NDArray[Any]) -> None:
+    """Refuse what is 0 or infinite in single precision, where it is needed."""
+    with np.errstate(over="ignore", under="ignore"):
+        single = values.astype(np.float32)
+    lost = (values > 0) & np.isfinite(values) & ~((single > 0) & np.isfinite(single))
+    if lost.any():
+        lost = lost & ~np.isnan(needed)
+    if lost.any():
+        value = np.broadcast_to(values, lost.shape)[lost][0]
+        raise ValueError(f"{what} {value:g} is out of the range of float32; use float64")
 
 
 def _check_state(plots: Array, state: TrackState | None, rows: Rows) -> None:
@@ -407,9 +440,10 @@ def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) 
     if state is None:
         bad[:1] = False
     if bad.any():
-        place = int(np.argwhere(bad)[0][0])
+        step, *track = (int(k) for k in np.argwhere(bad)[0])
+        where = (step, *track) if track else step
         raise DataError(
-            f"t: times must increase; the one at index {place} ({times[place].min():g} s) is not "
-            "later than the one before"
+            f"t: times must increase; the one at index {where} ({times[where]} s) is not later "
+            "than the one before"
         )
     return dts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.trackers.state import Gains, TrackState
 
-__all__ = ["KEPT", "TrackResult"]
+__all__ = ["KEPT", "TrackResult", "checked_keep"]
 
 Array = NDArray[np.float64]
 
@@ -84,3 +84,15 @@ class TrackResult:
     def coasted(self) -> NDArray[np.bool_]:
         """Where the track was carried on without a plot."""
         return np.isnan(self.innovation) & ~np.isnan(self.predicted)
+
+
+def checked_keep(keep: Sequence[str] | None) -> tuple[str, ...]:
+    """Names of outputs to keep, in the order of `KEPT`; a single word is one of them."""
+    if keep is None:
+        return KEPT
+    # A word is a sequence of letters.
+    names = (keep,) if isinstance(keep, str) else tuple(keep)
+    for name in names:
+        if name not in KEPT:
+            raise ValueError(f"keep: unknown {name!r}; out of {', '.join(KEPT)}")
+    return tuple(name for name in KEPT if name in names)

@@ -66,7 +66,8 @@ class TrackState:
         object.__setattr__(self, "lanes", lanes)
 
     def _read(self, row: int, count: int) -> Array:
-        return self.lanes[row : row + count].T.reshape(self.shape)
+        # A copy: what is written into it must not change the state.
+        return np.array(self.lanes[row : row + count].T).reshape(self.shape)
 
     @property
     def position(self) -> Array:

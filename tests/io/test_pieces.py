@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -11,6 +12,7 @@ from fuzzytrack.io.piece_writer import piece_writer
 from fuzzytrack.io.pieces import Piece, find_columns, read_pieces, recording_files
 from fuzzytrack.io.shuffle import partition_of, read_partition, write_partitions
 from fuzzytrack.io.tables import Words
+from fuzzytrack.io.tracks import read_tracks
 
 XY = Columns("t", "id", ("x", "y"))
 
@@ -140,6 +142,18 @@ def test_broken_files(tmp_path):
         find_columns([str(bad)])
     with pytest.raises(DataError, match="is not a Parquet file"):
         list(read_pieces([str(bad)], XY))
+
+
+def test_a_broken_page_names_its_file(tmp_path):
+    path = Path(parquet(tmp_path / "f.parquet", ["a"] * 3, [0.0, 1.0, 2.0], [0.0] * 3, [0.0] * 3))
+    content = bytearray(path.read_bytes())
+    pages = len(content) - 8 - int.from_bytes(content[-8:-4], "little")
+    content[4:pages] = b"\xff" * (pages - 4)
+    path.write_bytes(content)
+    with pytest.raises(DataError, match=r"f\.parquet: is not a Parquet file that can be read"):
+        list(read_pieces([str(path)], XY))
+    with pytest.raises(DataError, match=r"f\.parquet: is not a Parquet file that can be read"):
+        read_tracks(path, time="t", axes=["x", "y"])
     csv = tmp_path / "f.csv"
     for content, message in (
         (b"", "is empty"),

@@ -39,7 +39,7 @@ def test_a_cluster_that_loses_a_worker(files, tmp_path):
     here = track_partitions(TRACKER, files, columns, tmp_path / "here", partitions=1)
     with (
         distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as cluster,
         distributed.Client(cluster) as client,
     ):

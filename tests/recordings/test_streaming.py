@@ -91,7 +91,9 @@ def test_what_is_kept():
     (tracked,) = run_iter(FIXED, [piece], keep=("predicted", "gains"))
     assert set(tracked.outputs) == {"predicted", *GAINS}
     assert tracked.piece is piece
-    with pytest.raises(ValueError, match="keep: unknown 'position'; any of predicted, filtered"):
+    (tracked,) = run_iter(FIXED, [piece], keep="filtered")
+    assert set(tracked.outputs) == {"filtered"}
+    with pytest.raises(ValueError, match="keep: unknown 'position'; out of predicted, filtered"):
         OpenTracks(FIXED, keep=("position",))
 
 

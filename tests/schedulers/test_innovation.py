@@ -8,6 +8,10 @@ from fuzzytrack.gains import kalata, tracking_index
 from fuzzytrack.schedulers.innovation import InnovationScheduler
 
 
+def capped(sigma_v, sigma, dt):
+    return min(tracking_index(sigma_v, sigma, dt), 10.0)
+
+
 def by_the_paper(innovations, dts, sigmas, scheduler):
     """α by Eqs. 5 to 17 with matrices, of one innovation after the other."""
     n, alphas = scheduler.window, []
@@ -23,7 +27,7 @@ def by_the_paper(innovations, dts, sigmas, scheduler):
                 beta = 2 * (2 - alpha) - 4 * np.sqrt(max(1 - alpha, 0))
                 phi = beta**2 / (1 - alpha) * sigma**2 / dt**4 if alpha > 0 else -1
             else:
-                a, b = kalata(tracking_index(scheduler.sigma_d, sigma, dt))
+                a, b = kalata(capped(scheduler.sigma_d, sigma, dt))
                 corner = b * (2 * a - b) / (2 * (1 - a) * dt**2)
                 p = np.array([[a, b / dt], [b / dt, corner]]) * sigma**2
                 move, h = np.array([[1, dt], [0, 1]]), np.array([[1, 0]])
@@ -35,7 +39,7 @@ def by_the_paper(innovations, dts, sigmas, scheduler):
                 sigma_v2 = max(phi, sigma_v2)
             elif phi >= 0:
                 sigma_v2 = phi
-        alphas.append(kalata(tracking_index(np.sqrt(sigma_v2), sigma, dt))[0])
+        alphas.append(kalata(capped(np.sqrt(sigma_v2), sigma, dt))[0])
     return np.array(alphas)
 
 
@@ -68,11 +72,28 @@ def test_it_is_the_recursion_of_the_paper(scheduler):
     np.testing.assert_allclose(result.gains.beta[asked] / steps, beta / spans, rtol=1e-7)
 
 
-@given(st.floats(1.01, 1e4), st.floats(0.1, 10.0), st.floats(0.5, 500.0))
+@given(st.floats(1.01, 45.0), st.floats(0.1, 10.0), st.floats(0.5, 500.0))
 def test_the_default_gain_is_one_less_the_share_of_noise(ratio, dt, sigma):
     kernel = InnovationScheduler(1e-9, window=1).kernel(1)
     alpha, *_ = kernel(sigma * np.sqrt(ratio), 0.0, dt, sigma, (0.0, 2.0, 0.0, 0.0))
     assert alpha == pytest.approx(1 - 1 / ratio, rel=1e-6)
+
+
+@pytest.mark.parametrize("scheduler", [InnovationScheduler(), InnovationScheduler.as_published()])
+def test_one_plot_far_off_does_not_ring_on(scheduler):
+    times = np.arange(200.0)
+    plots = 100 * times + np.random.default_rng(0).normal(0, 10, 200)
+    plots[50] += 1e4
+    result = AlphaBetaTracker(scheduler).run(times, plots, 10.0)
+    assert np.nanmax(result.gains.beta) == pytest.approx(1.459, abs=1e-3)
+    assert np.abs(result.predicted - 100 * times)[65:].max() < 80
+
+
+def test_noise_and_time_steps_of_nothing():
+    for sigma, times in ((1e-200, [0.0, 1, 2, 3]), (10.0, [0.0, 1e-200, 2e-200, 3e-200])):
+        for scheduler in CASES:
+            result = AlphaBetaTracker(scheduler).run(times, [0.0, 10, 19, 31], sigma)
+            assert np.isfinite(result.filtered).all()
 
 
 def simulate(scheduler, runs=400, start=2):

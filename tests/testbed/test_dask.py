@@ -24,7 +24,7 @@ def test_a_cluster_that_loses_a_worker(monkeypatch):
     monkeypatch.setattr(montecarlo, "_RUNS", 2)
     with (
         distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as cluster,
         distributed.Client(cluster) as client,
     ):

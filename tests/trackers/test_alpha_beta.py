@@ -120,6 +120,42 @@ def test_missed_plots_are_coasted_and_beta_keeps_its_own_time_step():
     assert np.isnan(result.innovation[3])
 
 
+@pytest.mark.parametrize(
+    ("gains", "gap", "stable"),
+    [
+        ((0.5, 0.2), 14, True),
+        ((0.5, 0.2), 16, False),
+        ((0.9, 1.0), 2, True),
+        ((0.9, 1.0), 3, False),
+    ],
+)
+def test_how_long_gaps_may_be(gains, gap, stable):
+    """One plot is seen in every g steps: stable while 2α + gβ < 4."""
+    alpha, beta = gains
+    assert (2 * alpha + gap * beta < 4) == stable
+    plots = np.full(300 * gap, np.nan)
+    plots[::gap] = np.random.default_rng(1).normal(size=300)
+    plots[1] = 0.0
+    found = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta)).run(np.arange(float(len(plots))), plots)
+    assert (np.abs(found.filtered[-gap:]).max() < 1e3) == stable
+
+
+@pytest.mark.parametrize(
+    ("gains", "ratio", "stable"),
+    [
+        ((0.5, 0.2), 20.0, True),
+        ((0.5, 0.2), 23.0, False),
+        ((0.543, 0.548), 6.0, True),
+        ((0.543, 0.548), 7.0, False),
+    ],
+)
+def test_how_different_time_steps_may_be(gains, ratio, stable):
+    times = np.cumsum(np.tile([1.0, ratio], 600))
+    plots = np.random.default_rng(1).normal(size=len(times))
+    found = ft.AlphaBetaTracker(ft.FixedGains(*gains)).run(times, plots)
+    assert (np.abs(found.filtered[-2:]).max() < 1e4) == stable
+
+
 def test_the_start_waits_for_plots():
     plots = [np.nan, 4.0, np.nan, np.nan, 10.0, 12.0]
     result = ft.AlphaBetaTracker(FIXED).run([0, 1, 2, 4, 5, 6], plots)
@@ -236,6 +272,11 @@ def test_state_is_a_value():
     np.testing.assert_array_equal(state.position, [0.0, 0.0])
     assert later.shape == (2,)
     assert later.time == 1.0
+    lone = tracker.start(0.0, 0.0)
+    lone.position[...] = 5.0
+    assert lone.position == 0.0
+    with pytest.raises(TypeError, match="state must be a TrackState, got int"):
+        tracker.run([0.0], [1.0], state=3)
 
 
 def test_empty_and_single():
@@ -251,7 +292,7 @@ def test_empty_and_single():
     ("times", "plots", "sigma", "error", "message"),
     [
         ([0, 1], [0, np.inf], None, ft.DataError, r"infinite plot at index \(1,\)"),
-        ([0, 0], [0, 1], None, ft.DataError, r"at index 1 \(0 s\) is not later"),
+        ([0, 0], [0, 1], None, ft.DataError, r"at index 1 \(0\.0 s\) is not later"),
         ([0, np.nan], [0, 1], None, ft.DataError, "time at index 1 is not finite"),
         (
             [0, 1, 2],
@@ -264,6 +305,21 @@ def test_empty_and_single():
         ([0, 1], [0, 1], [1, 2, 3], ValueError, r"sigma: shape \(3,\) does not broadcast"),
         (0.0, 1.0, None, ValueError, "needs a time axis"),
         ([0, 1], np.empty((2, 0)), None, ValueError, "at least one axis of space"),
+        (
+            [[0, 100.0], [1, 200], [2, 150]],
+            np.zeros((3, 2, 1)),
+            None,
+            ft.DataError,
+            r"the one at index \(2, 1\) \(150\.0 s\) is not later",
+        ),
+        (
+            np.array(["2026-01-01", "2026-01-02"], "datetime64"),
+            [0, 1],
+            None,
+            ValueError,
+            r"t: needs seconds as real numbers, got datetime64\[D\]",
+        ),
+        ([0, 1], [0, 1j], None, ValueError, "z: needs real numbers, got complex128"),
     ],
 )
 def test_bad_input_is_named(times, plots, sigma, error, message):
@@ -283,6 +339,47 @@ def test_a_state_goes_on_later_and_with_plots_of_its_shape():
         other.step(state, [0.0, 0.0], 6.0)
 
 
+@pytest.mark.parametrize("compiled", [False, True])
+def test_tracks_of_their_own_times_go_on_with_common_ones(compiled):
+    tracker = ft.AlphaBetaTracker(FIXED)
+    if compiled:
+        tracker.compile()
+    times = np.arange(3.0)[:, None] + [0.0, 0.1]
+    plots = np.random.default_rng(1).normal(size=(5, 2, 2))
+    state = tracker.run(times, plots[:3]).state
+    later = np.array([5.0, 6.5])
+    expected = tracker.run(np.stack([later, later], axis=1), plots[3:], state=state)
+    together = tracker.run(later, plots[3:], state=state)
+    stepped = tracker.step(tracker.step(state, plots[3], 5.0), plots[4], 6.5)
+    for found in (together.state, stepped):
+        np.testing.assert_array_equal(found.lanes, expected.state.lanes)
+        np.testing.assert_array_equal(found.time, [6.5, 6.5])
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_a_mask_is_a_missed_plot(compiled):
+    tracker = ft.AlphaBetaTracker(FIXED)
+    if compiled:
+        tracker.compile()
+    plots = np.ma.array([[0.0], [1.0], [999.0], [3.0]], mask=[[0], [0], [1], [0]])
+    expected = tracker.run(range(4), [[0.0], [1.0], [np.nan], [3.0]])
+    np.testing.assert_array_equal(tracker.run(range(4), plots).filtered, expected.filtered)
+    state = tracker.start(plots[0], 0.0)
+    for k in range(1, 4):
+        state = tracker.step(state, plots[k], float(k))
+    np.testing.assert_array_equal(state.lanes, expected.state.lanes)
+    assert np.isnan(tracker.start(np.ma.masked, 0.0).position)
+
+
+def test_many_shapes_of_scans_do_not_pile_up():
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.25))
+    tracker.compile()
+    for tracks in range(1, 150):
+        state = tracker.start(np.zeros((tracks, 1)), 0.0)
+        tracker.step(state, np.zeros((tracks, 1)), 1.0)
+    assert 0 < len(tracker._hops) <= 64
+
+
 def test_a_state_does_not_share_its_time_with_the_caller():
     now = np.array([1.0, 2.0])
     state = ft.AlphaBetaTracker(FIXED).start(np.zeros((2, 1)), now)
@@ -297,6 +394,8 @@ def test_sigma_may_be_missing_where_the_plot_is():
 
 
 def test_arguments_of_the_tracker():
+    with pytest.raises(ValueError, match="n_axes must be at least 1, got 0"):
+        ft.AlphaBetaTracker(FIXED).compile(0)
     with pytest.raises(TypeError, match="scheduler must be a GainScheduler, got float"):
         ft.AlphaBetaTracker(0.5)
     with pytest.raises(ValueError, match="start: unknown 'three-point'; one of two-point"):

@@ -5,6 +5,7 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
 from fuzzytrack.gains import covariance, kalata, noise_ratio
+from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.schedulers import GainScheduler, KalmanCA, KalmanCV
 from fuzzytrack.trackers.covariance import track_covariance
 
@@ -262,6 +263,20 @@ def test_a_track_that_goes_on_is_refused(cut):
     after = tracker.run(times[cut:], plots[cut:], state=before.state)
     with pytest.raises(ValueError, match="goes on from a state"):
         track_covariance(after, 1.0, 1.0)
+
+
+def test_a_member_of_a_batch_without_its_state_is_refused_where_it_matters():
+    times, plots = np.arange(6.0), np.random.default_rng(0).normal(size=(6, 2))
+    whole = run_tracks(AlphaBetaTracker(ALPHA_BETA), [(times, plots), (times, plots)])[0]
+    alone = AlphaBetaTracker(ALPHA_BETA).run(times, plots)
+    np.testing.assert_array_equal(
+        track_covariance(whole, 1.0, 0.1).innovation_variance,
+        track_covariance(alone, 1.0, 0.1).innovation_variance,
+    )
+    plots[0, 1] = np.nan
+    lacking = run_tracks(AlphaBetaTracker(ALPHA_BETA), [(times, plots), (times, plots)])[0]
+    with pytest.raises(ValueError, match="result: a plot lacks a coordinate, and without its"):
+        track_covariance(lacking, 1.0, 0.1)
 
 
 def test_a_fading_acceleration_is_refused():

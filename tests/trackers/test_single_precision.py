@@ -1,5 +1,6 @@
 """Tracking in single precision: near to double, the same however it is cut, refused where wrong."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -243,3 +244,19 @@ def test_a_stream_after_a_large_job_compiles_no_more(monkeypatch):
     code = dict(runner(tracker, 1)._code)
     tracker.step(tracker.start(plots[0], times[0]), plots[1], times[1])
     assert runner(tracker, 1)._code == code
+
+
+@pytest.mark.parametrize("sigma", [1e39, 1e-46])
+def test_a_sigma_out_of_range_is_refused_where_it_counts(sigma):
+    tracker = ft.AlphaBetaTracker(KalmanCV(0.5))
+    sigmas, plots = np.array([10.0, 10.0, sigma, 10.0]), np.array([0.0, 1.0, np.nan, 3.0])
+    tracker.run(range(4), plots, sigmas, dtype=np.float32)
+    plots[2] = 2.0
+    message = re.escape(f"sigma: {sigma:g} is out of the range of float32; use float64")
+    with pytest.raises(ValueError, match=message):
+        tracker.run(range(4), plots, sigmas, dtype=np.float32)
+
+
+def test_a_time_step_out_of_range_is_refused():
+    with pytest.raises(ValueError, match="a time step of 1e-50 is out of the range of float32"):
+        FIXED.run([0.0, 1e-50, 1.0], [0.0, 1.0, 2.0], dtype=np.float32)
