@@ -30,7 +30,8 @@ class TrackResult:
     time : ndarray, shape (n_steps,) or (n_steps, ...batch)
         Times (s).
     measured : ndarray, shape (n_steps, ...batch, n_axes)
-        The plots (m); NaN where missed. All that follows has this shape.
+        The plots (m) as they were given, not a copy; NaN where missed. All that follows has this
+        shape.
     predicted : ndarray
         Position before the plot is used (m); NaN until the tracker has started.
     filtered : ndarray
