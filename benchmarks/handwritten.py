@@ -14,7 +14,7 @@ import numpy as np
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from fuzzytrack.trackers.rows import aligned
+from fuzzytrack.lanes.layout import aligned
 
 __all__ = ["bare", "fixed", "fuzzy", "vectorised"]
 

@@ -33,7 +33,7 @@ from fuzzytrack.io.pieces import ROWS, find_columns, read_pieces, recording_file
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lanes import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["cluster", "main", "one", "track"]
 

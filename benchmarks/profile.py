@@ -20,10 +20,10 @@ from benchmarks.work import (
     updates_a_second,
     warm,
 )
-from fuzzytrack.trackers import passage
-from fuzzytrack.trackers.calls import call_steady
-from fuzzytrack.trackers.lanes import runner
-from fuzzytrack.trackers.rows import BLOCK, OUTPUTS, aligned
+from fuzzytrack.kernels.calls import call_steady
+from fuzzytrack.lanes import block_loop as passage
+from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, aligned
+from fuzzytrack.trackers.lane_tracker import runner
 
 __all__ = ["parts", "where"]
 

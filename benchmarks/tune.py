@@ -1,4 +1,4 @@
-"""Tune the families of `fuzzytrack.testbed.ranking`, and print what the gallery measures.
+"""Tune the families of `fuzzytrack.tuning.ranking`, and print what the gallery measures.
 
 The numbers go into examples/plot_17_ranking.py. It takes about an hour.
 """
@@ -8,8 +8,8 @@ import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
-from fuzzytrack.testbed.published import TRACK_SETS, track_set
-from fuzzytrack.testbed.ranking import FAMILIES, tune
+from fuzzytrack.simulation.published import TRACK_SETS, track_set
+from fuzzytrack.tuning.ranking import FAMILIES, tune
 
 TRACKS, SEED = 120, 1
 

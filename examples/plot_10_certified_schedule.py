@@ -14,7 +14,7 @@ from matplotlib import pyplot as plt
 
 import fuzzytrack as ft
 from fuzzytrack.gains.certificate import error_matrix
-from fuzzytrack.schedulers.certificate import certify
+from fuzzytrack.schedulers.reachable_gains import certify
 
 narrow = certify(ft.load_rulebase("stiffness-damping"))
 print(f"{narrow.verdict}: at least by a factor of {narrow.rate:.3f} a step")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         plot_track,
     )
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
-    from fuzzytrack.schedulers.certificate import certify
+    from fuzzytrack.schedulers.reachable_gains import certify
     from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
 
 __version__ = "0.1.0"
@@ -72,7 +72,7 @@ _HOMES = {
         "plot_track",
     ),
     "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),
-    "schedulers.certificate": ("certify",),
+    "schedulers.reachable_gains": ("certify",),
     "trackers": ("AlphaBetaTracker", "Gains", "TrackResult", "TrackState", "Tracker"),
 }
 _HOME = {name: f"fuzzytrack.{home}" for home, names in _HOMES.items() for name in names}

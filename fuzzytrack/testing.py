@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.lanes import LaneTracker, runner
+from fuzzytrack.trackers.lane_tracker import LaneTracker, runner
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import TrackState
 
@@ -69,8 +69,8 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     Checked are: shapes of one track and of batches, coasting on missed plots, irregular times,
     that a batch equals its tracks one by one, that streaming equals `run` to the last bit, pickling
     of the state in the middle of a track, determinism, that inputs are left alone, that bad input
-    raises ValueError, and of a `fuzzytrack.trackers.lanes.LaneTracker` that it gives the same to
-    the last bit when compiled.
+    raises ValueError, and of a `fuzzytrack.trackers.lane_tracker.LaneTracker` that it gives the
+    same to the last bit when compiled.
 
     Parameters
     ----------

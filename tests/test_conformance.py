@@ -6,6 +6,7 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import (
     BenedictBordner,
     FadingMemory,
@@ -15,7 +16,6 @@ from fuzzytrack.schedulers import (
     KalmanCV,
     LinearCombination,
     QualityGains,
-    normalizations,
     schedulers,
 )
 from fuzzytrack.testing import check_scheduler, check_tracker

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
-from fuzzytrack.schedulers import normalizations, schedulers
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.schedulers import schedulers
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [

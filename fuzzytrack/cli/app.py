@@ -9,42 +9,42 @@ import typer
 from typer.main import get_command
 
 from fuzzytrack import __version__
-from fuzzytrack.cli.errors import Commands
+from fuzzytrack.cli.complaints import Commands
 
 __all__ = ["app"]
 
 # Where each command lives, and what the list of commands says of it. A module is imported when its
 # command is called: nobody waits for those that he does not use.
 COMMANDS = {
-    "demo": ("demonstration:demo", "Track a simulated turning target, and draw what happens."),
+    "demo": ("demo:demo", "Track a simulated turning target, and draw what happens."),
     "track": (
-        "tracking:track",
+        "track:track",
         "Track the plots of a file, or of a folder of files in order of their names.",
     ),
-    "compare": ("comparing:compare", "Compare trackers on a true track with simulated noise."),
+    "compare": ("compare:compare", "Compare trackers on a true track with simulated noise."),
     "testbed": (
-        "experimenting:experiment",
+        "testbed:experiment",
         "Run trackers on many random draws of a scenario.",
     ),
     "simulate": (
-        "simulating:simulate",
+        "simulate:simulate",
         "Write the plots of a simulated target, beside the truth.",
     ),
     "surface": ("surface:surface", "Draw the control surface of a rule base."),
     "certify": (
-        "certifying:certify",
+        "certify:certify",
         "Prove that no order of gains makes the error grow, or show one.",
     ),
     "gains": ("gains:gains", "Say what fixed gains do: stability, poles, noise and lag."),
     "trackers": (
-        "listing:trackers",
+        "trackers:trackers",
         "List what there is to track with, with its source; plug-ins included.",
     ),
     "reproduce": (
-        "reproducing:reproduce",
+        "reproduce:reproduce",
         "Rebuild the experiments of a paper, and hold its numbers against ours.",
     ),
-    "rulebase": ("rulebases:rulebase", "List, show, check, explain and edit rule bases."),
+    "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
     "design": ("gains:design", "Choose gains by a rule of design, and say what they do."),
 }
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from fuzzytrack.cli.output import print_table, say, show
-from fuzzytrack.cli.surface import gains_of
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.schedulers.review import Review, gains_of
 
 __all__ = ["as_json", "explanation", "print_explanation", "print_rulebase"]
 
@@ -164,3 +166,32 @@ def print_explanation(system: FuzzySystem, found: dict[str, Any]) -> None:
     for name, value in {**found["outputs"], **found["gains"]}.items():
         unit = system.rules.output(name).unit if name in found["outputs"] else ""
         say(f"{name} = {show(value, 6)}{' ' + unit if unit and unit != '1' else ''}")
+
+
+def review_lines(review: Review) -> Iterator[tuple[str, str]]:
+    """Review as a terminal prints it: what, and how it is."""
+    rules = review.rules
+    for role, variables in (("input", rules.inputs), ("output", rules.outputs)):
+        for variable in variables:
+            yield f"{role} {variable.name}", _variable(variable)
+    written = ""
+    if review.written:
+        written = f"; {review.written[0]} of {review.written[1]} combinations of sets have one"
+    yield "rules", f"{len(rules.rules)}{written}"
+    silent = f"no rule fires on {review.silent:.1%} of the inputs"
+    yield "coverage", silent if review.silent else "a rule fires everywhere"
+    for name, (low, high) in review.ranges.items():
+        yield f"{name} reaches", f"{show(low)} to {show(high)}"
+    yield "signs", review.symmetry
+    if review.table_bounds:
+        bounds = (f"{name} {show(bound, 2)}" for name, bound in review.table_bounds.items())
+        yield "table error", f"at most {', '.join(bounds)} (method table)"
+    yield "tracker", review.schedules or "schedules no gains"
+
+
+def _variable(variable: Variable) -> str:
+    universe = variable.universe
+    return (
+        f"{len(variable.sets)} sets on [{universe.low:g}, {universe.high:g}], "
+        f"{universe.points} points"
+    )

@@ -13,7 +13,7 @@ from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.gains.wdomain import alpha_beta_from_w, kalata_damping
+from fuzzytrack.schedulers.review import gains_of
 
 __all__ = ["grid_table", "surface"]
 
@@ -85,23 +85,6 @@ def grid_table(system: FuzzySystem, points: int, fixed: dict[str, float]) -> dic
     table.update(system.evaluate(grid))
     table.update(gains_of(table))
     return table
-
-
-def gains_of(outputs: dict[str, Array]) -> dict[str, Array]:
-    """α and β of stiffness, with or without damping; nothing for other outputs."""
-    if "stiffness" not in outputs:
-        return {}
-    stiffness = outputs["stiffness"]
-    # NaN where no rule fires
-    known = ~np.isnan(stiffness + outputs.get("damping", 0.0))
-    damping = (
-        outputs["damping"][known] if "damping" in outputs else kalata_damping(stiffness[known])
-    )
-    gains = {name: np.full(known.shape, np.nan) for name in ("alpha", "beta")}
-    found = alpha_beta_from_w(stiffness[known], damping)
-    for name, values in zip(gains, found, strict=True):
-        gains[name][known] = values
-    return gains
 
 
 def _print_ranges(system: FuzzySystem, table: dict[str, Array]) -> None:

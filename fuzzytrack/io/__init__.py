@@ -3,7 +3,7 @@
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.io.pieces import Piece, find_columns, read_pieces, recording_files
 from fuzzytrack.io.tables import Table, read_table, write_table
-from fuzzytrack.io.tracks import Recording, Track, read_tracks, write_tracks
+from fuzzytrack.io.tracks import Recording, Track, read_tracks
 
 __all__ = [
     "Piece",
@@ -18,5 +18,4 @@ __all__ = [
     "recording_files",
     "whole_file",
     "write_table",
-    "write_tracks",
 ]

@@ -55,7 +55,7 @@ def piece_writer(
 
     Notes
     -----
-    Columns as `fuzzytrack.io.write_tracks` has them, with gamma_NAME always. A piece becomes one
+    Columns as `fuzzytrack.recordings.write_tracks` has them, with gamma_NAME always. A piece is one
     row group of a Parquet file.
     """
     names = [name for name, _ in _names(columns)]

@@ -18,13 +18,13 @@ from fuzzytrack.papers.alwagih_abdulla_tables import (
 )
 from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
 from fuzzytrack.schedulers import BenedictBordner, GrowingMemory, LinearCombination
-from fuzzytrack.testbed.noise import WHITE, Noise, streams
-from fuzzytrack.testbed.published import s3
-from fuzzytrack.testbed.scenario import PlotNoise, Scenario
+from fuzzytrack.simulation.noise import WHITE, Noise, streams
+from fuzzytrack.simulation.published import s3
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.window_search import WindowSearch
 
 if TYPE_CHECKING:

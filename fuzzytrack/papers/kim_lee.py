@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from fuzzytrack.gains.design import kalata
 from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, part, row
 from fuzzytrack.schedulers import FixedGains, InnovationScheduler
+from fuzzytrack.simulation.noise import streams
+from fuzzytrack.simulation.published import kim_lee, kim_lee_velocity
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.noise import streams
-from fuzzytrack.testbed.published import kim_lee, kim_lee_velocity
 from fuzzytrack.testbed.results import Results
-from fuzzytrack.testbed.scenario import PlotNoise, Scenario
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 
 if TYPE_CHECKING:

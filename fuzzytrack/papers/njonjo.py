@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
 from fuzzytrack.schedulers import FadingMemory, GainScheduler
 from fuzzytrack.schedulers.base import Kernel, Memory
+from fuzzytrack.simulation.published import warship
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.published import warship
-from fuzzytrack.testbed.scenario import PlotNoise, Scenario
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 
 if TYPE_CHECKING:

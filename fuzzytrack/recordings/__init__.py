@@ -2,5 +2,6 @@
 
 from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.recordings.streaming import run_iter
+from fuzzytrack.recordings.track_writer import write_tracks
 
-__all__ = ["run_iter", "run_tracks"]
+__all__ = ["run_iter", "run_tracks", "write_tracks"]

@@ -20,7 +20,7 @@ from fuzzytrack.io.pieces import ROWS, read_pieces
 from fuzzytrack.io.shuffle import read_partition, write_partitions
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
-from fuzzytrack.trackers.lanes import LaneTracker, announce
+from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 
 __all__ = ["check_output_folder", "track_partitions"]
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.pieces import Piece
-from fuzzytrack.trackers.lanes import LaneTracker, announce
+from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 from fuzzytrack.trackers.result import checked_keep
-from fuzzytrack.trackers.rows import Rows
 from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["OpenTracks", "TrackedPiece", "run_iter"]
@@ -78,7 +78,7 @@ def run_iter(
     Notes
     -----
     Holds one piece, its outputs, and the state of every track that has been seen: ``8·rows.kept``
-    bytes a lane (see `fuzzytrack.trackers.rows.Rows`), and about 250 bytes a track for its identity
+    bytes a lane (see `fuzzytrack.lanes.layout.Rows`), and about 250 bytes a track for its identity
     and time.
 
     Examples

@@ -4,11 +4,10 @@ from fuzzytrack.schedulers.base import GainScheduler, schedulers
 from fuzzytrack.schedulers.fading_memory import FadingMemory
 from fuzzytrack.schedulers.fixed import FixedGains
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
+from fuzzytrack.schedulers.growing_memory import BenedictBordner, GrowingMemory, LinearCombination
 from fuzzytrack.schedulers.innovation import InnovationScheduler
-from fuzzytrack.schedulers.kalman import KalmanCA, KalmanCV
-from fuzzytrack.schedulers.memory import BenedictBordner, GrowingMemory, LinearCombination
-from fuzzytrack.schedulers.normalization import Normalization, normalizations
-from fuzzytrack.schedulers.quality import QualityGains
+from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
+from fuzzytrack.schedulers.track_quality import QualityGains
 
 __all__ = [
     "BenedictBordner",
@@ -21,8 +20,6 @@ __all__ = [
     "KalmanCA",
     "KalmanCV",
     "LinearCombination",
-    "Normalization",
     "QualityGains",
-    "normalizations",
     "schedulers",
 ]

@@ -6,11 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
 
+from fuzzytrack.kernels.language import Memory
 from fuzzytrack.plugins import Registry
 
 __all__ = ["GainScheduler", "Kernel", "Memory", "schedulers"]
-
-Memory = tuple[float, ...]
 
 #: ``kernel(innovation, change, dt, sigma, memory) -> (alpha, beta, gamma, phi, memory)``; see
 #: `GainScheduler.kernel`. Its first, second and fourth arguments are floats, or tuples of floats

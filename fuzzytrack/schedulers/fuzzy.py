@@ -11,8 +11,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-# Its normalisations register themselves.
-import fuzzytrack.schedulers.noise_normalization  # noqa: F401
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.kernel import infer_function
 from fuzzytrack.fuzzy.ramps import find_ramps
@@ -20,9 +18,9 @@ from fuzzytrack.fuzzy.reader import SCHEDULER_KEYS
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.gains.wdomain import bilinear
+from fuzzytrack.normalizations import Normalization, normalizations
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
-from fuzzytrack.schedulers.memory import least_squares_gains
-from fuzzytrack.schedulers.normalization import Normalization, normalizations
+from fuzzytrack.schedulers.growing_memory import least_squares_gains
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["FuzzyScheduler"]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.io.files import whole_file
-from fuzzytrack.testbed.scenario import Scenario
+from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["ChunkStore"]

@@ -13,14 +13,14 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.simulation.noise import Plots
+from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.simulation.starting import prepare_start
 from fuzzytrack.testbed.chunk_store import ChunkStore
-from fuzzytrack.testbed.noise import Plots
 from fuzzytrack.testbed.results import Results, Sample
-from fuzzytrack.testbed.scenario import Scenario
-from fuzzytrack.testbed.starting import prepare_start
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lanes import announce
+from fuzzytrack.trackers.lane_tracker import announce
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
@@ -108,7 +108,7 @@ def monte_carlo(
     --------
     >>> import numpy as np
     >>> from fuzzytrack.testbed.montecarlo import monte_carlo
-    >>> from fuzzytrack.testbed.scenario import PlotNoise, Scenario
+    >>> from fuzzytrack.simulation.scenario import PlotNoise, Scenario
     >>> t = np.arange(20.0)
     >>> scenario = Scenario("straight", t, 100 * t[:, None], PlotNoise(10.0))
     >>> trackers = {"fixed": make_tracker("fixed:alpha=0.5:beta=0.2")}

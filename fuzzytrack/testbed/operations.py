@@ -19,7 +19,7 @@ import numpy as np
 
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
-from fuzzytrack.trackers.lanes import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["Counted", "OperationCount", "Tally", "count_operations", "count_program"]
 

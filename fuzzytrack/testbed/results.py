@@ -325,20 +325,20 @@ class Results:
     # ---------------------------------------------------------------- in other forms
 
     def table(self) -> list[dict[str, Any]]:
-        """What there is to say of each tracker, a row each; see `fuzzytrack.testbed.tables`."""
-        from fuzzytrack.testbed.tables import table
+        """What there is to say of each tracker, a row each; see `fuzzytrack.testbed.results_as`."""
+        from fuzzytrack.testbed.results_as import table
 
         return table(self)
 
     def to_json_dict(self) -> dict[str, Any]:
-        """Summary and curves in plain types, for JSON; see `fuzzytrack.testbed.tables`."""
-        from fuzzytrack.testbed.tables import json_dict
+        """Summary and curves in plain types, for JSON; see `fuzzytrack.testbed.results_as`."""
+        from fuzzytrack.testbed.results_as import json_dict
 
         return json_dict(self)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Curves as a table, a row a tracker and scan; see `fuzzytrack.testbed.tables`."""
-        from fuzzytrack.testbed.tables import data_frame
+        """Curves as a table, a row a tracker and scan; see `fuzzytrack.testbed.results_as`."""
+        from fuzzytrack.testbed.results_as import data_frame
 
         return data_frame(self)
 

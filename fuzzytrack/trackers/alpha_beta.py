@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.runner import Recursion
 from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.trackers.alpha_beta_step import steady_function, step_function
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.lanes import LaneTracker
-from fuzzytrack.trackers.recursion import steady_function, step_function
-from fuzzytrack.trackers.rows import Rows
-from fuzzytrack.trackers.runner import Recursion
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["STARTS", "AlphaBetaTracker"]
 

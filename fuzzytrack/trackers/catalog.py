@@ -14,7 +14,8 @@ from typing import Any
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, normalizations, schedulers
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, schedulers
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
 from fuzzytrack.yamltree import suggestion

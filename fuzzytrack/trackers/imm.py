@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.gains.checks import nonnegative, number, positive, within
+from fuzzytrack.lanes.runner import Recursion
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.imm_recursion import MODEL, PROBABILITIES, imm_rows, step_function
-from fuzzytrack.trackers.lanes import LaneTracker
-from fuzzytrack.trackers.runner import Recursion
+from fuzzytrack.trackers.imm_step import MODEL, PROBABILITIES, imm_rows, step_function
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["MANEUVERS", "InteractingModels"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fuzzytrack.trackers.rows import Rows
+from fuzzytrack.lanes.layout import Rows
 
 __all__ = ["Gains", "TrackState"]
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from fuzzytrack.gains import design
 from fuzzytrack.gains.checks import finite
+from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.runner import Recursion
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.lanes import LaneTracker
-from fuzzytrack.trackers.rows import Rows
-from fuzzytrack.trackers.runner import Recursion
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["WindowSearch"]
 

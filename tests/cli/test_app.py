@@ -6,7 +6,7 @@ import warnings
 import pytest
 
 import fuzzytrack
-from fuzzytrack.cli import listing
+from fuzzytrack.cli import trackers as listing
 from fuzzytrack.cli.app import COMMANDS, load_command
 from fuzzytrack.errors import PluginWarning
 from fuzzytrack.trackers.catalog import CatalogEntry
@@ -31,17 +31,17 @@ def test_help(run):
 
 
 HEAVY = {"numba", "scipy", "skfuzzy", "matplotlib", "pyarrow", "pandas", "dask", "distributed"}
-OTHERS = {f"fuzzytrack.{name}" for name in ("papers", "plotting", "cli.experimenting", "cli.gains")}
+OTHERS = {f"fuzzytrack.{name}" for name in ("papers", "plotting", "cli.testbed", "cli.gains")}
 TRACK = ("track", "a.csv", "--time", "t", "--axes", "x,y", "--tracker", "stiffness-damping")
 
 
 @pytest.mark.parametrize(
     ("words", "unused"),
     [
-        (("--help",), {"numpy", "yaml", "rich.table", "fuzzytrack.cli.tracking"}),
-        (("--version",), {"numpy", "yaml", "rich.table", "fuzzytrack.cli.tracking"}),
+        (("--help",), {"numpy", "yaml", "rich.table", "fuzzytrack.cli.track"}),
+        (("--version",), {"numpy", "yaml", "rich.table", "fuzzytrack.cli.track"}),
         (("rulebase", "list"), {"fuzzytrack.trackers", "fuzzytrack.io", "fuzzytrack.testbed"}),
-        (TRACK, {"fuzzytrack.cli.large_jobs", "fuzzytrack.fuzzy.saving"}),
+        (TRACK, {"fuzzytrack.recordings.large_jobs", "fuzzytrack.fuzzy.saving"}),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )
@@ -137,7 +137,7 @@ def test_interrupted_process(tmp_path):
         "import signal\n"
         # A process started in the background of a script ignores the signal.
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "from fuzzytrack.cli import tracking, main\n"
+        "from fuzzytrack.cli import main, track as tracking\n"
         "tracking.run_tracks = lambda *a: signal.raise_signal(signal.SIGINT)\n"
         "import sys; sys.argv = ['fuzzytrack', 'track', 'a.csv']\n"
         "main()\n"

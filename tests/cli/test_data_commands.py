@@ -5,7 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from fuzzytrack.cli import comparing, demonstration, output, tracking
+from fuzzytrack.cli import compare as comparing
+from fuzzytrack.cli import demo as demonstration
+from fuzzytrack.cli import output
+from fuzzytrack.cli import track as tracking
 from fuzzytrack.io import read_tracks
 from fuzzytrack.trackers.catalog import make_tracker
 

@@ -6,7 +6,7 @@ import pytest
 from fuzzytrack import load_rulebase
 from fuzzytrack.cli.gain_card import card
 from fuzzytrack.gains.certificate import error_matrix
-from fuzzytrack.schedulers.certificate import reachable_gains
+from fuzzytrack.schedulers.reachable_gains import reachable_gains
 
 EDGE = """\
 rulebase: 1

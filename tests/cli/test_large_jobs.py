@@ -6,7 +6,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from fuzzytrack.cli import tracking
+from fuzzytrack.cli import track as tracking
 
 
 @pytest.fixture
@@ -144,7 +144,7 @@ def test_no_rows(fails, tmp_path):
 
 
 def test_a_tracker_without_states(fails, folder, monkeypatch):
-    from fuzzytrack.cli import tracking
+    from fuzzytrack.cli import track as tracking
 
     monkeypatch.setattr(tracking, "make_tracker", lambda name: object())
     assert "object cannot go on from piece to piece" in fails("track", folder)

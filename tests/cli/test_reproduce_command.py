@@ -40,7 +40,7 @@ def test_files_are_written(run, tmp_path):
 
 def test_all_papers_in_one_list(run, monkeypatch):
     papers = {"zhang-jiang": "zhang_jiang"}
-    monkeypatch.setattr("fuzzytrack.cli.reproducing.PAPERS", papers)
+    monkeypatch.setattr("fuzzytrack.cli.reproduce.PAPERS", papers)
     found = json.loads(run("reproduce", "all", "--json").stdout)
     assert [each["paper"] for each in found["papers"]] == ["zhang-jiang"]
 
@@ -71,6 +71,6 @@ def test_runs_and_seed_reach_the_paper(run, monkeypatch):
         asked.append((name, runs, seed))
         return original(name, runs, seed, progress)
 
-    monkeypatch.setattr("fuzzytrack.cli.reproducing.rebuild", noted)
+    monkeypatch.setattr("fuzzytrack.cli.reproduce.rebuild", noted)
     run("reproduce", "zhang-jiang", "--runs", "7", "--seed", "3")
     assert asked == [("zhang-jiang", 7, 3)]

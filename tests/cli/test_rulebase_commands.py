@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from fuzzytrack import FuzzySystem, alpha_beta_from_w, load_rulebase
-from fuzzytrack.cli import review as reviewing
 from fuzzytrack.cli.rulebase_tables import _cell
 from fuzzytrack.fuzzy.loading import rulebase_path
 from fuzzytrack.fuzzy.schema import dumps_schema
+from fuzzytrack.schedulers import review as reviewing
 
 LIST = """\
 rulebase: 1

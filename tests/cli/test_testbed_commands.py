@@ -7,11 +7,12 @@ import sys
 import numpy as np
 import pytest
 
-from fuzzytrack.cli import experimenting, workers
+from fuzzytrack.cli import testbed as experimenting
 from fuzzytrack.io import read_tracks
+from fuzzytrack.recordings import workers
+from fuzzytrack.simulation.noise import streams
+from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.noise import streams
-from fuzzytrack.testbed.scenario_files import load_scenario, shipped_scenarios
 
 OWN = (
     "scenario: 1\nname: own\ntarget: {motion: turn, speed: 6, radius: 4500}\n"

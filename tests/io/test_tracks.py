@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
-from fuzzytrack.io import check_output, read_table, read_tracks, tables, write_table, write_tracks
+from fuzzytrack.io import check_output, read_table, read_tracks, tables, write_table
+from fuzzytrack.recordings import write_tracks
 
 
 def written(tmp_path, text, name="f.csv"):

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
-from fuzzytrack.papers import llinas_field as field
-from fuzzytrack.papers import llinas_sampling as sampling
 from fuzzytrack.papers import reproduce
+from fuzzytrack.papers.llinas import field, sampling
 from fuzzytrack.schedulers import KalmanCV
+from fuzzytrack.simulation.published import MANEUVERS, llinas_maneuver
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.published import MANEUVERS, llinas_maneuver
-from fuzzytrack.testbed.scenario import PlotNoise, Scenario
 
 RUNS = 80
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains, FuzzyScheduler, load_rulebase
+from fuzzytrack.lanes import runner as runner_module
 from fuzzytrack.schedulers import GainScheduler, KalmanCA, KalmanCV
 from fuzzytrack.testing import check_scheduler
-from fuzzytrack.trackers import runner as runner_module
 
 OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "innovation")
 

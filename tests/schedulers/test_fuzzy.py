@@ -8,8 +8,8 @@ import fuzzytrack as ft
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.variable import Universe, Variable
-from fuzzytrack.schedulers import normalizations
-from fuzzytrack.schedulers.normalization import Chan
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.normalizations.chan import Chan
 from fuzzytrack.testing import check_scheduler
 
 

@@ -9,7 +9,7 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.schema import rulebase_schema
 from fuzzytrack.gains import growing_memory, kalata
-from fuzzytrack.testbed.published import track_set
+from fuzzytrack.simulation.published import track_set
 
 LEVELS = (0.29, 0.308, 0.556, 0.778)
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
-from fuzzytrack.testbed import compare, compare_tracks, comparison, turning_target
+from fuzzytrack.simulation import turning_target
+from fuzzytrack.testbed import compare, compare_tracks, comparison
 from fuzzytrack.trackers.catalog import make_tracker
 
 FIXED = {"fixed": AlphaBetaTracker(FixedGains(0.5, 0.2))}

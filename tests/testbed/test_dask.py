@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed import montecarlo
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.scenario import PlotNoise, Scenario
 from fuzzytrack.trackers.catalog import make_tracker
 
 T = np.arange(12.0)

@@ -9,10 +9,10 @@ from scipy import stats
 from fuzzytrack import AlphaBetaTracker, FixedGains
 from fuzzytrack.gains.performance import noise_ratio
 from fuzzytrack.schedulers import KalmanCV
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed import metrics
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
-from fuzzytrack.testbed.scenario import PlotNoise, Scenario
 
 T, R, N, D = 3, 5, 7, 2  # trackers, runs, scans, axes
 FIRST = 2

@@ -14,10 +14,11 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
 from fuzzytrack.schedulers import KalmanCV
-from fuzzytrack.testbed import canonical_field, llinas_maneuver, montecarlo
+from fuzzytrack.simulation import canonical_field, llinas_maneuver
+from fuzzytrack.simulation.noise import Noise, streams
+from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario
+from fuzzytrack.testbed import montecarlo
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.noise import Noise, streams
-from fuzzytrack.testbed.scenario import FieldSensors, PlotNoise, Scenario
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import make_tracker
 

@@ -7,8 +7,8 @@ import pytest
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.kernel import infer_function
-from fuzzytrack.papers.llinas_columns import columns
-from fuzzytrack.papers.llinas_programs import (
+from fuzzytrack.papers.llinas.columns import columns
+from fuzzytrack.papers.llinas.programs import (
     alpha_beta,
     alpha_beta_gamma,
     chan,

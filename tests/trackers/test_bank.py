@@ -9,12 +9,12 @@ from scipy.special import softmax
 
 import fuzzytrack as ft
 from fuzzytrack.schedulers import BenedictBordner, GrowingMemory, LinearCombination
-from fuzzytrack.testbed.noise import WHITE, Noise, streams
-from fuzzytrack.testbed.published import s3
-from fuzzytrack.testbed.scenario import PlotNoise
+from fuzzytrack.simulation.noise import WHITE, Noise, streams
+from fuzzytrack.simulation.published import s3
+from fuzzytrack.simulation.scenario import PlotNoise
 from fuzzytrack.trackers.bank import SELECTIONS, ParallelBank
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.lane_tracker import runner
 
 WHITE_NOISE = PlotNoise((15.0, 23.0), WHITE, clean=2)
 COLOURED_NOISE = PlotNoise((19.0, 23.0), Noise(correlation=0.7), clean=2)

@@ -7,11 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker
-from fuzzytrack.schedulers.kalman import KalmanCA, KalmanCV
+from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.imm import InteractingModels
-from fuzzytrack.trackers.imm_recursion import _exp
-from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.imm_step import _exp
+from fuzzytrack.trackers.lane_tracker import runner
 
 # One whole-track tracker for all checks that need it compiled.
 JOINT = InteractingModels(0.2, 3.0, sigma_w=10.0)

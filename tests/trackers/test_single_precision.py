@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from fuzzytrack.kernels.compile import entry_point
+from fuzzytrack.lanes import runner as module
+from fuzzytrack.lanes.layout import BLOCK
 from fuzzytrack.schedulers import GainScheduler, InnovationScheduler, KalmanCA, KalmanCV
 from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch
-from fuzzytrack.trackers import runner as module
 from fuzzytrack.trackers.covariance import track_covariance
-from fuzzytrack.trackers.lanes import runner
-from fuzzytrack.trackers.native import entry_point
+from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
-from fuzzytrack.trackers.rows import BLOCK
 
 SINGLE = np.dtype(np.float32)
 SIGMA = 10.0

@@ -13,12 +13,12 @@ import pytest
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.ramps import find_ramps
-from fuzzytrack.trackers import runner as module
-from fuzzytrack.trackers.lanes import runner
-from fuzzytrack.trackers.native import entry_point
-from fuzzytrack.trackers.passage import compiled_run
+from fuzzytrack.kernels.compile import entry_point
+from fuzzytrack.lanes import runner as module
+from fuzzytrack.lanes.block_loop import compiled_run
+from fuzzytrack.lanes.layout import BLOCK, aligned
+from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
-from fuzzytrack.trackers.rows import BLOCK, aligned
 
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
 FUZZY = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))

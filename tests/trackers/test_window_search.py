@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 import fuzzytrack as ft
 from fuzzytrack.schedulers import BenedictBordner
-from fuzzytrack.testbed.noise import Noise, streams
-from fuzzytrack.testbed.published import s3
-from fuzzytrack.testbed.scenario import PlotNoise
+from fuzzytrack.simulation.noise import Noise, streams
+from fuzzytrack.simulation.published import s3
+from fuzzytrack.simulation.scenario import PlotNoise
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lanes import runner
+from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.window_search import WindowSearch
 
 

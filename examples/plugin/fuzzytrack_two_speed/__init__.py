@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fuzzytrack.schedulers import GainScheduler, Normalization
+from fuzzytrack.normalizations import Normalization
+from fuzzytrack.schedulers import GainScheduler
 
 __all__ = ["SoftSign", "TwoSpeed"]
 

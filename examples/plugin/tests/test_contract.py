@@ -2,7 +2,8 @@ from fuzzytrack_two_speed import SoftSign, TwoSpeed
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.saving import dumps_rulebase
-from fuzzytrack.schedulers import normalizations, schedulers
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.schedulers import schedulers
 from fuzzytrack.testing import check_scheduler
 
 

@@ -1,0 +1,110 @@
+"""The command that certifies a rule base."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from fuzzytrack import gains as theory
+from fuzzytrack.cli import options
+from fuzzytrack.cli.output import print_json, print_table, say, show
+from fuzzytrack.fuzzy.loading import load_rulebase
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.schedulers.reachable_gains import REACHES
+from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
+
+__all__ = ["certify"]
+
+
+def certify(
+    name: Annotated[str, typer.Argument(metavar="RULEBASE", help="Shipped name, or file.")],
+    reach: Annotated[
+        str,
+        typer.Option(
+            metavar="R", help=f"Gains to allow for, {' or '.join(REACHES)}: limits, or rules."
+        ),
+    ] = "universe",
+    json: options.Json = False,
+) -> None:
+    """Prove that no order of gains makes the error grow, or show one.
+
+    The gains of the rule base may switch from step to step in any way, not only as the rules would
+    have it.
+    """
+    rules = load_rulebase(name)
+    found = certify_gains(rules, reach=reach)
+    refuted = len(found.sequence) > 0
+    sequence = [_step(rules, *map(float, pair)) for pair in found.sequence]
+    if json:
+        print_json(
+            {
+                "rulebase": rules.name,
+                "reach": reach,
+                "verdict": found.verdict,
+                "rate": found.rate,
+                "lyapunov": found.lyapunov,
+                "vertices": found.vertices,
+                "sequence": sequence,
+                "growth": found.growth if refuted else None,
+                "missed_plots_included": False,
+            }
+        )
+        return
+    say(f"{rules.name}: {found.verdict}")
+    if refuted:
+        alone = all(theory.is_stable(step["alpha"], step["beta"]) for step in sequence)
+        say(
+            f"Among gains {_reached(rules, reach)}\n"
+            f"are these. Repeated in this order they make the error grow by a factor of "
+            f"{found.growth:.4f} a step,\nthough each by itself is "
+            f"{'stable' if alone else 'stable, or on the edge of stability'}:"
+        )
+        say()
+        heads = [key for key in ("stiffness", "damping", "alpha", "beta") if key in sequence[0]]
+        rows = [
+            [str(number), *(show(step[key]) for key in heads), f"{step['modulus']:.4f}"]
+            for number, step in enumerate(sequence, 1)
+        ]
+        print_table(["step", *heads, "largest pole"], rows)
+    elif found.verdict == "certified":
+        (_, x), (_, y) = found.lyapunov
+        say(
+            f"For gains {_reached(rules, reach)},\n"
+            f"in any order, the error shrinks at every step to {found.rate:.4f} of what it was, or "
+            "less.\nIts measure is √(eᵀPe), where e is the error of position and T times the error "
+            "of\nvelocity, and"
+        )
+        say()
+        say(f"  P = [{1:>9.4f} {x:>9.4f} ]")
+        say(f"      [{x:>9.4f} {y:>9.4f} ]")
+    else:
+        say(
+            f"For gains {_reached(rules, reach)},\n"
+            "in any order, no measure of the error was found that always shrinks (the best one may "
+            f"grow\nby a factor of {found.rate:.4f} a step), nor a sequence of gains that makes the"
+            " error grow."
+        )
+    say()
+    say("Missed plots, at which nothing is corrected, are not included.")
+
+
+def _reached(rules: RuleBase, reach: str) -> str:
+    if reach == "rules":
+        return "between what the single rules conclude"
+    limits = (
+        f"{output.name} in [{output.universe.low:g}, {output.universe.high:g}]"
+        for output in rules.outputs
+    )
+    return f"within the limits of the outputs, {', '.join(limits)}"
+
+
+def _step(rules: RuleBase, alpha: float, beta: float) -> dict[str, float]:
+    """One of the gains of a sequence, and what it is as stiffness and damping."""
+    step = {"alpha": alpha, "beta": beta}
+    u = 4 - 2 * alpha - beta
+    if "stiffness" in rules.output_names and beta * u > 0:
+        step |= {"stiffness": math.sqrt(beta / u), "damping": alpha / math.sqrt(beta * u)}
+    return step | {"modulus": float(np.abs(theory.poles(alpha, beta)).max())}

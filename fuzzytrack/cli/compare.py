@@ -1,0 +1,102 @@
+"""The command that compares trackers on simulated noise, and the table of a comparison."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.output import print_json, print_table, progress, show, with_error
+from fuzzytrack.cli.track import read
+from fuzzytrack.testbed.comparison import Comparison, compare_tracks
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import make_tracker
+
+__all__ = ["DEFAULT_TRACKERS", "as_json", "compare", "print_comparison", "trackers_named"]
+
+DEFAULT_TRACKERS = "fixed:alpha=0.5377:beta=0.2018,chan-style,stiffness-damping"
+
+
+def compare(
+    file: options.Plots,
+    noise: Annotated[
+        float,
+        typer.Option(metavar="SIGMA", help="Standard deviation of the noise on each axis, > 0."),
+    ],
+    trackers: Annotated[
+        str, typer.Option(metavar="A,B,C", help="Trackers; see `fuzzytrack trackers`.")
+    ] = DEFAULT_TRACKERS,
+    runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 200,
+    seed: options.Seed = 0,
+    time: options.Time = None,
+    id: options.Id = None,
+    axes: options.Axes = None,
+    sort: options.Sort = False,
+    json: options.Json = False,
+) -> None:
+    """Compare trackers on a true track with simulated noise.
+
+    The positions in the file are taken as true. Every tracker sees the same noise, and the same
+    seed gives the same numbers.
+    """
+    if not 0 < noise < math.inf:
+        raise ValueError(f"--noise must be > 0, got {noise:g}")
+    chosen = trackers_named(trackers)
+    recording = read(file, time, id, axes, sort)
+    tracks = [(track.time, track.plots) for track in recording.tracks]
+    with progress("comparing") as watch:
+        found = compare_tracks(chosen, tracks, noise, runs, seed, watch)
+    if json:
+        print_json({"file": file, "tracks": len(tracks), **as_json(found)})
+    else:
+        print_comparison(found)
+
+
+def trackers_named(text: str) -> dict[str, Tracker]:
+    """Trackers as written after ``--trackers``."""
+    names = options.names(text, "--trackers")
+    doubled = [name for name in names if names.count(name) > 1]
+    if doubled:
+        raise ValueError(f"--trackers: {doubled[0]!r} is given twice")
+    found = {name: make_tracker(name) for name in names}
+    for name, tracker in found.items():
+        if not getattr(tracker, "causal", True):
+            typer.echo(f"note: {name} looks at the plot that it predicts", err=True)
+    return found
+
+
+def as_json(found: Comparison) -> dict[str, Any]:
+    """Comparison as JSON prints it."""
+    keys = ("predicted_rmse", "predicted_error", "filtered_rmse", "filtered_error")
+    return {
+        "noise": found.sigma,
+        "runs": found.runs,
+        "seed": found.seed,
+        "scans": round(found.scans.mean()),
+        "measured_rmse": found.measured_rmse,
+        "trackers": [
+            {"name": name, **{key: getattr(found, key)[k] for key in keys}}
+            for k, name in enumerate(found.names)
+        ],
+    }
+
+
+def print_comparison(found: Comparison) -> None:
+    """Table of a comparison, RMSE ± its standard error."""
+    rows = []
+    for k, name in enumerate(found.names):
+        predicted = with_error(found.predicted_rmse[k], found.predicted_error[k])
+        filtered = with_error(found.filtered_rmse[k], found.filtered_error[k])
+        change = 100 * (found.predicted_rmse[k] / found.predicted_rmse[0] - 1)
+        rows.append([name, predicted, filtered, "" if k == 0 else f"{change:+.1f} %"])
+    rows += [[], ["the plots themselves", "", show(found.measured_rmse), ""]]
+    print_table(
+        ["RMSE of position (m)", "predicted", "filtered", "vs first"],
+        rows,
+        title=(
+            f"{found.runs} runs of {found.scans.mean():.0f} scans, "
+            f"noise {found.sigma:g} m on each axis, seed {found.seed}"
+        ),
+    )

@@ -1,0 +1,138 @@
+"""The command that shows what fuzzytrack does, without a file and without a network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.compare import (
+    DEFAULT_TRACKERS,
+    as_json,
+    print_comparison,
+    trackers_named,
+)
+from fuzzytrack.cli.output import print_json, progress, say
+from fuzzytrack.cli.pictures import save_picture, surfaces
+from fuzzytrack.fuzzy.loading import load_rulebase
+from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.io.tables import write_table
+from fuzzytrack.io.tracks import Recording, Track
+from fuzzytrack.recordings.track_writer import write_tracks
+from fuzzytrack.simulation.trajectories import turning_target
+from fuzzytrack.testbed.comparison import Comparison
+from fuzzytrack.testbed.comparison import compare as run_comparison
+from fuzzytrack.trackers.result import TrackResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["demo"]
+
+Array = NDArray[np.float64]
+
+SIGMA = 50.0
+RULES = "stiffness-damping"
+
+
+def demo(
+    output: Annotated[
+        str, typer.Option("--output", "-o", metavar="DIR", help="Folder for what is made.")
+    ] = "demo",
+    seed: options.Seed = 0,
+    runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 100,
+    json: options.Json = False,
+) -> None:
+    """Track a simulated turning target, and draw what happens.
+
+    A target flies straight at 150 m/s, turns by 180 degrees at 3 degrees a second, and flies
+    straight again; it is seen every second with 50 m of noise on each axis.
+    """
+    folder = Path(output)
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(None, "is not a folder", output)
+    folder.mkdir(exist_ok=True)
+    t, truth = turning_target()
+    trackers = trackers_named(DEFAULT_TRACKERS)
+    with progress("comparing") as watch:
+        found = run_comparison(trackers, t, truth, SIGMA, runs, seed, watch)
+    noise = np.random.default_rng(seed).standard_normal(truth.shape)
+    results = {name: tr.run(t, truth + SIGMA * noise, SIGMA) for name, tr in trackers.items()}
+    written = _tables(folder, found, results[RULES])
+    written += _pictures(folder, truth, results)
+    if json:
+        print_json({**as_json(found), "files": written})
+        return
+    print_comparison(found)
+    say()
+    for path in written:
+        say(f"wrote {path}")
+
+
+def _tables(folder: Path, found: Comparison, result: TrackResult) -> list[Path]:
+    """Write the comparison and one track."""
+    comparison, track = folder / "comparison.csv", folder / "track.csv"
+    columns: dict[str, Sequence[str] | Array] = {
+        "tracker": found.names,
+        "predicted_rmse": found.predicted_rmse,
+        "predicted_error": found.predicted_error,
+        "filtered_rmse": found.filtered_rmse,
+        "filtered_error": found.filtered_error,
+    }
+    write_table(comparison, columns)
+    plots = Track("", result.time, result.measured)
+    write_tracks(track, Recording("demo", "t", "", ("x", "y"), (plots,)), [result])
+    return [comparison, track]
+
+
+def _pictures(
+    folder: Path,
+    truth: Array,
+    results: dict[str, TrackResult],
+) -> list[Path]:
+    """Draw the rule base, the gains and the track."""
+    rules = load_rulebase(RULES)
+
+    def memberships() -> Figure:
+        from fuzzytrack.plotting import plot_memberships
+
+        return plot_memberships(rules)[0]
+
+    def gain_plane() -> Figure:
+        from fuzzytrack.plotting import plot_gain_plane
+
+        fixed, *others = results
+        # A single point would be lost among the others' gains.
+        point = tuple(float(getattr(results[fixed].gains, n)[-1, 0]) for n in ("alpha", "beta"))
+        visited = {name: results[name].gains for name in others}
+        return plot_gain_plane(visited, rules, mark={fixed: (point[0], point[1])})[0]
+
+    def track() -> Figure:
+        from fuzzytrack.plotting import plot_track
+
+        return plot_track(results[RULES], truth)[0]
+
+    def errors() -> Figure:
+        from fuzzytrack.plotting import plot_errors
+
+        return plot_errors(results, truth)[0]
+
+    drawings: dict[str, Callable[[], Figure]] = {
+        "surfaces": lambda: surfaces(FuzzySystem(rules), 101),
+        "memberships": memberships,
+        "gain-plane": gain_plane,
+        "track": track,
+        "errors": errors,
+    }
+    paths = []
+    with progress("drawing") as watch:
+        for number, (name, draw) in enumerate(drawings.items(), 1):
+            paths.append(folder / f"{name}.png")
+            save_picture(paths[-1], draw)
+            watch(number / len(drawings))
+    return paths

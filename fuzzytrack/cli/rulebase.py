@@ -1,0 +1,179 @@
+"""The commands about rule bases."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.complaints import one_line
+from fuzzytrack.cli.output import print_json, print_table, say
+from fuzzytrack.cli.rulebase_tables import (
+    as_json,
+    explanation,
+    print_explanation,
+    print_rulebase,
+    review_lines,
+)
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path, shipped_rulebases
+from fuzzytrack.fuzzy.system import FuzzySystem
+
+if TYPE_CHECKING:
+    from fuzzytrack.schedulers.review import Review
+
+__all__ = ["rulebase"]
+
+rulebase = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    help="List, show, check, explain and edit rule bases.",
+    rich_markup_mode=None,
+)
+
+Name = Annotated[str, typer.Argument(metavar="RULEBASE", help="Shipped name, or file.")]
+
+
+@rulebase.command("list")
+def list_(json: options.Json = False) -> None:
+    """List the rule bases that come with fuzzytrack."""
+    found = [load_rulebase(name) for name in shipped_rulebases()]
+    if json:
+        keys = ("name", "inputs", "outputs", "scheduler", "source", "description")
+        print_json([{key: as_json(rules)[key] for key in keys} for rules in found])
+        return
+    rows = [
+        [
+            r.name,
+            ", ".join(r.input_names),
+            ", ".join(r.output_names),
+            dict(r.scheduler).get("normalization", "–"),
+            str(len(r.rules)),
+        ]
+        for r in found
+    ]
+    print_table(["name", "inputs", "outputs", "normalization", "rules"], rows, words=4)
+
+
+@rulebase.command()
+def show(name: Name, json: options.Json = False) -> None:
+    """Show variables, sets and rules."""
+    rules = load_rulebase(name)
+    if json:
+        print_json(as_json(rules))
+    else:
+        print_rulebase(rules)
+
+
+@rulebase.command()
+def check(
+    files: Annotated[list[str], typer.Argument(metavar="FILE...", help="Files, or names.")],
+    json: options.Json = False,
+) -> None:
+    """Check rule bases: what is right, or the place of the first mistake."""
+    from fuzzytrack.schedulers.review import review
+
+    reviews: list[dict[str, Any]] = []
+    wrong = False
+    for file in files:
+        try:
+            found = review(load_rulebase(file))
+        except (RuleBaseError, ValueError) as error:
+            wrong = True
+            typer.echo(_with_file(error, file), err=True)
+            reviews.append({"file": file, "ok": False, "error": str(error)})
+            continue
+        reviews.append({"file": file, "ok": True, **found.as_json()})
+        if not json:
+            _print_review(file, found)
+    if json:
+        print_json(reviews)
+    if wrong:
+        raise typer.Exit(2)
+
+
+def _with_file(error: Exception, file: str) -> str:
+    """Message that names the file, also where the mistake has no single place in it."""
+    if getattr(error, "location", None) or file in str(error):
+        return one_line(error)
+    return one_line(ValueError(f"{file}: {error}"))
+
+
+def _print_review(file: str, found: Review) -> None:
+    say(f"{file}: ok")
+    lines = list(review_lines(found))
+    width = max(len(key) for key, _ in lines)
+    for key, text in lines:
+        say(f"  {key:<{width}}  {text}")
+
+
+@rulebase.command()
+def explain(
+    name: Name,
+    at: Annotated[str, typer.Option(metavar="E=.3,dE=-.2", help="A value for each input.")],
+    method: Annotated[str, typer.Option(metavar="M", help="exact, relation or table.")] = "exact",
+    json: options.Json = False,
+) -> None:
+    """Say which rules fire at a point, and what comes of it."""
+    system = FuzzySystem(load_rulebase(name), method)
+    point = options.numbers_at(at, system.rules.input_names)
+    found = explanation(system, point)
+    if json:
+        print_json(found)
+    else:
+        print_explanation(system, found)
+
+
+@rulebase.command("set")
+def set_(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="The rule base.")],
+    says: Annotated[str, typer.Argument(metavar="SAYS", help="What the rule is to say: M-Z.")],
+    cell: Annotated[
+        str, typer.Option(metavar="dE=ns,E=pl", help="The conditions of the rule, all of them.")
+    ],
+    output: Annotated[
+        str | None,
+        typer.Option("--output", "-o", metavar="OUT.yaml", help="Write here. [default: in place]"),
+    ] = None,
+) -> None:
+    """Change one cell of a table, or one rule; comments stay."""
+    from fuzzytrack.fuzzy.saving import set_cell
+    from fuzzytrack.io.files import whole_file
+
+    where = options.pairs(cell, "--cell")
+    source = rulebase_path(file)
+    if output is None and file in shipped_rulebases():
+        raise ValueError(f"{file} comes with fuzzytrack; write your own with -o my-{file}.yaml")
+    raw = source.read_bytes()
+    before = loads_rulebase(raw, str(source))
+    changed = set_cell(raw.decode("utf-8"), where, says, file=str(source))
+    target = source if output is None else Path(output)
+    with whole_file(target) as draft:
+        draft.write_bytes(changed.encode("utf-8"))
+    key = frozenset(where.items())
+    for old, new in zip(before.rules, loads_rulebase(changed).rules, strict=True):
+        if frozenset(old.conditions) == key:
+            say(f"was  {old}")
+            say(f"now  {new}")
+    say(f"wrote {target}")
+
+
+@rulebase.command()
+def schema(
+    output: Annotated[
+        str | None, typer.Option("--output", "-o", metavar="FILE", help="Write it to a file.")
+    ] = None,
+) -> None:
+    """Print the JSON Schema of rule-base files, for editors."""
+    from fuzzytrack.fuzzy.schema import dumps_schema
+
+    if output is None:
+        say(dumps_schema().rstrip())
+        return
+    from fuzzytrack.io.files import whole_file
+
+    with whole_file(output) as draft:
+        draft.write_text(dumps_schema(), encoding="utf-8")
+    say(f"wrote {output}")

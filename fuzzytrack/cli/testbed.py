@@ -1,0 +1,193 @@
+"""The command that runs Monte Carlo experiments, and the table of their results."""
+
+from __future__ import annotations
+
+import json as json_text
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.compare import trackers_named
+from fuzzytrack.cli.output import print_json, print_table, progress, say, show, with_error
+from fuzzytrack.cli.pictures import save_picture
+from fuzzytrack.io.files import check_output, whole_file
+from fuzzytrack.recordings.workers import workers
+from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.simulation.scenario_files import load_scenario, scenario_source, shipped_scenarios
+from fuzzytrack.testbed.montecarlo import monte_carlo
+from fuzzytrack.testbed.results import Results
+from fuzzytrack.trackers.base import Tracker
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["experiment"]
+
+_FILES = ("results.json", "report.html")
+
+
+def experiment(
+    scenario: options.ScenarioOrNone = None,
+    trackers: Annotated[
+        str | None,
+        typer.Option(metavar="A,B,C", help="Instead of those that the scenario names."),
+    ] = None,
+    runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 200,
+    seed: options.Seed = 0,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes of this computer.")] = 1,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Dask cluster, e.g. tcp://host:8786.")
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option("--output", "-o", metavar="DIR", help="Folder for report and results."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with what the folder holds already.")
+    ] = False,
+    json: options.Json = False,
+) -> None:
+    """Run trackers on many random draws of a scenario.
+
+    Without SCENARIO lists those that are shipped. The same seed gives the same numbers on any
+    number of processes or computers.
+    """
+    if scenario is None:
+        _list(json)
+        return
+    if resume and output is None:
+        raise ValueError("--resume needs -o DIR, the folder of the job to go on with")
+    if scheduler is not None and jobs > 1:
+        raise ValueError("--jobs and --scheduler: give one; a cluster has workers of its own")
+    drawn = load_scenario(scenario)
+    chosen = _chosen(trackers, drawn)
+    folder = None if output is None else _folder(output)
+    try:
+        with workers(jobs, scheduler) as executor, progress("simulating") as watch:
+            found = monte_carlo(
+                drawn,
+                chosen,
+                runs,
+                seed,
+                progress=watch,
+                executor=executor,
+                folder=folder,
+                resume=resume,
+            )
+        written = [] if folder is None else _write(folder, found)
+    except KeyboardInterrupt:
+        if folder is None:
+            raise
+        typer.echo(f"interrupted; what is done is in {output}, --resume goes on", err=True)
+        raise typer.Exit(130) from None
+    if json:
+        print_json({**found.to_json_dict(), "files": written})
+        return
+    _print(found)
+    for path in written:
+        say(f"wrote {path}")
+
+
+def _list(json: bool) -> None:
+    """List the shipped scenarios."""
+    rows = [(name, scenario_source(name)) for name in shipped_scenarios()]
+    if json:
+        print_json([{"name": name, "source": source} for name, source in rows])
+    else:
+        print_table(["scenario", "source"], rows, words=2)
+
+
+def _chosen(text: str | None, scenario: Scenario) -> Mapping[str, Tracker] | None:
+    """Trackers that were asked for; None stands for those of the scenario."""
+    if text is not None:
+        return trackers_named(text)
+    if not scenario.trackers:
+        raise ValueError(f"--trackers: needed, since scenario {scenario.name!r} names none")
+    return None
+
+
+# -------------------------------------------------------------------- folder
+
+
+def _folder(output: str) -> Path:
+    """Folder, made if need be; finds out what cannot be written before the work is done."""
+    folder = Path(output)
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(None, "is not a folder", output)
+    folder.mkdir(exist_ok=True)
+    for name in _FILES:
+        check_output(folder / name)
+    return folder
+
+
+def _write(folder: Path, found: Results) -> list[Path]:
+    """Write numbers, report and pictures."""
+    from fuzzytrack.reports.html_report import report_pictures, write_report
+
+    written = [folder / name for name in _FILES]
+    text = json_text.dumps(found.to_json_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+    with whole_file(written[0]) as draft:
+        draft.write_text(text + "\n", encoding="utf-8")
+    with progress("drawing"):
+        pictures = report_pictures(found)
+        write_report(written[1], found, pictures=pictures)
+        for name, figure in pictures.items():
+            written.append(folder / f"{name}.png")
+            _save(written[-1], figure)
+    return written
+
+
+def _save(path: Path, figure: Figure) -> None:
+    save_picture(path, lambda: figure)
+
+
+# -------------------------------------------------------------------- table
+
+
+def _print(found: Results) -> None:
+    """Tables of the trackers, numbers ± their standard errors."""
+    table = found.table()
+    rows = [
+        [
+            row["name"],
+            with_error(row["predicted_rmse"], row["predicted_rmse_se"]),
+            with_error(row["filtered_rmse"], row["filtered_rmse_se"]),
+            _change(row),
+        ]
+        for row in table
+    ]
+    rows += [[], ["the plots themselves", "", show(found.measured_rmse), ""]]
+    print_table(["RMSE (m)", "predicted", "filtered", "vs first"], rows, title=_title(found))
+    say()
+    rows = [
+        [
+            row["name"],
+            with_error(row["predicted_mean"], row["predicted_mean_se"]),
+            show(math.sqrt(row["predicted_variance"])),
+            show(row["peak"]),
+            "–" if row["peak_scan"] is None else str(row["peak_scan"] + 1),
+        ]
+        for row in table
+    ]
+    print_table(["error of prediction (m)", "mean", "std dev", "peak RMSE", "at scan"], rows)
+    say()
+    say("vs first: 95 % interval of the change of a run's RMSE of prediction; * if without 0")
+
+
+def _title(found: Results) -> str:
+    first = found.first_scored + 1
+    return (
+        f"{found.scenario}: {found.runs} runs of {len(found.time)} scans, "
+        f"scored from scan {first}, seed {found.seed}"
+    )
+
+
+def _change(row: Mapping[str, Any]) -> str:
+    low, high = row["change_low"], row["change_high"]
+    if low is None or not low <= high:
+        return "" if low is None else "–"
+    return f"{low:+.3g} to {high:+.3g}{'*' if low > 0 or high < 0 else ' '}"

@@ -1,0 +1,1 @@
+"""Many tracks side by side: how a recursion runs over blocks of lanes."""

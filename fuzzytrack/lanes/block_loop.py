@@ -1,0 +1,145 @@
+"""The compiled passage of a job: all its lanes, block by block, over all time steps.
+
+It is the same for all trackers and compiled once: what a tracker does in a step it is given as the
+address of compiled code. Importing this needs Numba.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from fuzzytrack.kernels.calls import call_steady, call_step
+from fuzzytrack.kernels.compile import compiled, fingerprint, use_wide_vectors
+from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows
+
+__all__ = ["compiled_hop", "compiled_run", "layout"]
+
+
+def layout(rows: Rows) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """What the passage has to know of the rows of a lane: sizes and places, and of each output."""
+    places = (rows.n_axes, rows.state, rows.kept, rows.plot, rows.sigma, rows.dt, rows.plots)
+    return places, tuple(rows.output(name) for name in OUTPUTS)
+
+
+# Views first: the compiler sees that their indices cannot be negative, and copies in one go.
+def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int) -> None:
+    into = b[row * BLOCK : row * BLOCK + count]
+    if stride == 0:
+        value = source[start]
+        for i in range(count):
+            into[i] = value
+    else:
+        out_of = source[start:]
+        for i in range(count):
+            into[i] = out_of[i * stride]
+
+
+def _infinite(numbers: Any, start: int, count: int) -> int:
+    """How many of some numbers are infinite."""
+    some, found = numbers[start : start + count], 0
+    for i in range(count):
+        found += abs(some[i]) == math.inf
+    return found
+
+
+def _copy_out(b: Any, row: int, target: Any, start: int, stride: int, count: int) -> None:
+    out_of, into = b[row * BLOCK : row * BLOCK + count], target[start:]
+    for i in range(count):
+        into[i * stride] = out_of[i]
+
+
+def _all_have(b: Any, row: int, count: int, least: float) -> bool:
+    values, lacking = b[row * BLOCK : row * BLOCK + count], 0
+    for i in range(count):
+        lacking += values[i] < least
+    return lacking == 0
+
+
+def _run(
+    step: int, steady: int, results: bool, places: Any, output_rows: Any, b: Any, unwanted: Any,
+    n_steps: int, lanes: int, first: int, last: int, plots: Any, dts: Any, sigmas: Any,
+    dt_strides: Any, sigma_strides: Any, states: Any, outputs: Any,
+) -> int:  # fmt: skip
+    """Run the lanes from `first` to before `last` of a job over all time steps.
+
+    `steady` is 0 if there is none, and leaves results in the buffer or not; the last step does, for
+    the state. How many plots were infinite is returned.
+    """
+    n_axes, state, kept, plot_row, sigma_row, dt_row, plots_row = places
+    use_wide_vectors()
+    predicted, infinite = outputs[0], 0
+    for begin in range(first, last, BLOCK):
+        count = min(BLOCK, last - begin)
+        for r in range(state):
+            _copy_in(b, r, states, r * lanes + begin, 1, count)
+        settled = False
+        for k in range(n_steps):
+            if (k == 0) | (sigma_strides[0] > 0):
+                start = k * sigma_strides[0] + begin * sigma_strides[1]
+                for j in range(n_axes):
+                    place = start + j * sigma_strides[2]
+                    _copy_in(b, sigma_row + j, sigmas, place, sigma_strides[1], count)
+            at, start = (k * lanes + begin) * n_axes, k * dt_strides[0] + begin * dt_strides[1]
+            infinite += _infinite(plots, at, count * n_axes)
+            straight = settled & (results | (k < n_steps - 1))
+            if straight:
+                target, place = (predicted, at) if len(predicted) else (unwanted, 0)
+                call_steady(steady, b, count, dts[start], plots, at, target, place)
+            else:
+                for j in range(n_axes):
+                    _copy_in(b, plot_row + j, plots, at + j, n_axes, count)
+                _copy_in(b, dt_row, dts, start, dt_strides[1], count)
+                call_step(step, b, count)
+                settled = (steady != 0) & (dt_strides[1] == 0)
+                settled = settled and _all_have(b, plots_row, count, 2.0)
+            # Gains there is one a lane, of the others one an axis.
+            for o in range(1 if straight else 0, len(outputs)):
+                if len(outputs[o]):
+                    width = n_axes if o < len(outputs) - 3 else 1
+                    for j in range(width):
+                        place = (k * lanes + begin) * width + j
+                        _copy_out(b, output_rows[o] + j, outputs[o], place, width, count)
+        for r in range(kept):
+            _copy_out(b, r, states, r * lanes + begin, 1, count)
+    return infinite
+
+
+def _hop(
+    step: int, n_axes: int, state: int, kept: int, plot_row: int, b: Any, lanes: int, old: Any,
+    plots: Any, dt: float, sigma: float, new: Any,
+) -> int:  # fmt: skip
+    """One step of all lanes, with one time step and one sigma for all.
+
+    It is `_run` cut down to what a track that comes plot by plot needs.
+    """
+    sigma_row, dt_row = plot_row + n_axes, plot_row + 2 * n_axes
+    before, after = old.reshape(-1), new.reshape(-1)
+    for begin in range(0, lanes, BLOCK):
+        count = min(BLOCK, lanes - begin)
+        for r in range(state):
+            _copy_in(b, r, before, r * lanes + begin, 1, count)
+        for j in range(n_axes):
+            _copy_in(b, plot_row + j, plots, begin * n_axes + j, n_axes, count)
+            for i in range(count):
+                b[(sigma_row + j) * BLOCK + i] = sigma
+        for i in range(count):
+            b[dt_row * BLOCK + i] = dt
+        call_step(step, b, count)
+        for r in range(kept):
+            _copy_out(b, r, after, r * lanes + begin, 1, count)
+    return _infinite(plots, 0, lanes * n_axes)
+
+
+@cache
+def compiled_run() -> Callable[..., int]:
+    """`_run`, compiled; other threads may run meanwhile."""
+    return compiled(_run, fingerprint(_run), nogil=True)
+
+
+@cache
+def compiled_hop() -> Callable[..., int]:
+    """`_hop`, compiled; for the one type of arguments that it is first called with."""
+    return compiled(_hop, fingerprint(_hop))

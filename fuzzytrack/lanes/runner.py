@@ -1,0 +1,334 @@
+"""Runs the recursion over lanes and time, in plain Python or compiled."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.kernels.compile import entry_point
+from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows, aligned
+
+__all__ = ["InfinitePlotError", "Recursion", "Runner"]
+
+Array = NDArray[np.float64]
+
+#: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
+#: sooner. Measured for a new tracker; code that is on disk would pay from a third of that.
+COMPILE_ABOVE = 200_000
+#: Coordinates of a job from which several threads pay.
+THREADS_ABOVE = 500_000
+#: Parts of a job for each thread, so that none waits long for the last.
+PARTS = 4
+
+_GAINS = ("alpha", "beta", "gamma")
+
+
+class InfinitePlotError(ValueError):
+    """A plot is infinite."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recursion:
+    """A tracker's arithmetic: what a lane remembers, and how it goes one step on.
+
+    Attributes
+    ----------
+    rows : Rows
+        Layout of a lane.
+    memory : tuple of float
+        Memory of a lane that has seen nothing, as long as `rows` says.
+    step : callable
+        ``step(stride)`` makes the function ``f(buffer, count)`` that does one time step of the
+        first `count` lanes, `stride` at most, in place in their buffer, in which row `r` of lane
+        `i` is at ``r * stride + i``. It finds plot, sigma and dt filled in, and leaves state and
+        results. It is run in plain Python over a list and compiled over an array, so it has loops,
+        selects and numbers in it, and calls nothing else.
+    steady : callable, optional
+        ``steady(stride, results)`` makes the function ``f(buffer, count, dt, plots, predicted)``
+        that does the same for lanes that have all seen two plots and have their time step in
+        common, only faster, and leaves the results in the buffer or not. It reads the plots where
+        they lie, and writes the predictions where they are to be.
+    """
+
+    rows: Rows
+    memory: tuple[float, ...]
+    step: Callable[[int], Callable[[Any, int], None]]
+    steady: Callable[[int, bool], Callable[[Any, int, float, Any, Any], None]] | None = None
+
+
+@dataclass(eq=False)
+class Runner:
+    """Runs a recursion over lanes and time.
+
+    Lanes are kept as an array of shape (rows.kept, lanes), see `fuzzytrack.lanes.layout.Rows`.
+
+    Attributes
+    ----------
+    recursion : Recursion
+    work : int
+        Coordinates that were tracked so far.
+    horizon : int
+        What `work` will be after the jobs that were announced.
+    hop : callable or None
+        After `compile`, that of `fuzzytrack.lanes.block_loop`, from its argument `b` on.
+    """
+
+    recursion: Recursion
+    work: int = 0
+    horizon: int = 0
+    hop: Callable[..., int] | None = field(default=None, init=False, repr=False)
+    _code: dict[tuple[object, type], Any] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def rows(self) -> Rows:
+        """Layout of a lane."""
+        return self.recursion.rows
+
+    def fresh(self, count: int) -> Array:
+        """Lanes that have seen nothing, shape (rows.kept, count)."""
+        lanes = np.zeros((self.rows.kept, count))
+        lanes[: self.rows.velocity] = np.nan
+        lanes[self.rows.memory : self.rows.state] = np.reshape(self.recursion.memory, (-1, 1))
+        return lanes
+
+    def __call__(
+        self,
+        lanes: Array | None,
+        plots: NDArray[Any],
+        dts: Array,
+        sigmas: Array,
+        native: bool | None = None,
+        keep: Sequence[str] = OUTPUTS,
+        threads: int | None = None,
+    ) -> tuple[Array, dict[str, NDArray[Any]]]:
+        """Run over time.
+
+        Parameters
+        ----------
+        lanes : ndarray, shape (rows.kept, lanes), or None
+            None for lanes that have seen nothing.
+        plots : ndarray, shape (n_steps, lanes, n_axes)
+            Of the type of number to work with.
+        dts : ndarray, shape (n_steps, lanes or 1)
+        sigmas : ndarray of three axes that broadcasts with `plots`
+        native : bool, optional
+            Whether to run compiled; unless given, once the jobs together are large enough to pay
+            for the compilation, or in single precision. The results are the same.
+        keep : sequence of str
+            Outputs wanted.
+        threads : int, optional
+            Threads that share the lanes of a compiled job; unless given one, or for a large job
+            all processors.
+
+        Returns
+        -------
+        lanes : ndarray
+            The lanes after the last step.
+        outputs : dict of ndarray
+            Of `keep`: predicted, filtered, velocity, acceleration, innovation, shaped as `plots`,
+            and alpha, beta, gamma, shape (n_steps, lanes).
+
+        Raises
+        ------
+        InfinitePlotError
+            If a plot is infinite.
+        """
+        if native is None:
+            large = max(self.horizon, self.work + plots.size) > COMPILE_ABOVE
+            native = large or plots.dtype != np.float64
+        self.work += plots.size
+        after = self.fresh(plots.shape[1]) if lanes is None else np.array(lanes, order="C")
+        if native:
+            return self._run_compiled(after, plots, dts, sigmas, keep, threads)
+        return self._run_plain(after, plots, dts, sigmas, keep)
+
+    def step(
+        self, lanes: Array, plots: Array, dts: list[float], sigmas: list[list[float]]
+    ) -> Array:
+        """One step in plain Python.
+
+        Parameters
+        ----------
+        lanes : ndarray, shape (rows.kept, lanes)
+        plots : ndarray, shape (lanes, n_axes)
+        dts : list of float
+            One a lane.
+        sigmas : list of list of float
+            One an axis for each lane.
+
+        Returns
+        -------
+        ndarray
+            The lanes after the step.
+        """
+        step, kept, scratch = self._plain_step, self.rows.kept, [0.0] * (2 * self.rows.n_axes)
+        after = []
+        for lane, z, sigma, dt in zip(lanes.T.tolist(), plots.tolist(), sigmas, dts, strict=True):
+            b = [*lane, *z, *sigma, dt, *scratch]
+            step(b, 1)
+            after.append(b[:kept])
+        return np.ascontiguousarray(np.array(after).reshape(len(after), kept).T)
+
+    @cached_property
+    def _plain_step(self) -> Callable[[Any, int], None]:
+        return self.recursion.step(1)
+
+    def _run_plain(
+        self, after: Array, plots: Array, dts: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
+    ) -> tuple[Array, dict[str, Array]]:
+        if np.isinf(plots).any():
+            raise InfinitePlotError
+        step, rows = self._plain_step, self.rows
+        n_steps, count, _ = plots.shape
+        # What a step is given, in the order of the rows: plot, sigma, time step.
+        all_dts = np.broadcast_to(dts[:, :, None], (n_steps, count, 1))
+        given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
+        # Looked up once: this is the inner loop of a small job.
+        n_state, n_kept, results = rows.last_plot, rows.kept, slice(rows.predicted, rows.kept)
+        told, scratch = slice(rows.plot, rows.change), [0.0] * (rows.total - rows.kept)
+        trace = np.empty((n_steps, count, n_state + n_kept - rows.predicted))
+        for lane in range(count):
+            b = after[:, lane].tolist() + scratch
+            history = []
+            for row in given[:, lane].tolist():
+                b[told] = row
+                step(b, 1)
+                history.append(b[:n_state] + b[results])
+            if history:
+                trace[:, lane] = history
+                after[:, lane] = b[:n_kept]
+        # What lies between state and results is not in the trace.
+        skipped = rows.predicted - n_state
+        outputs = {}
+        for name in keep:
+            row = rows.output(name)
+            column = row if row < n_state else row - skipped
+            part = trace[:, :, column : column + rows.n_axes]
+            outputs[name] = trace[:, :, column].copy() if name in _GAINS else part.copy()
+        return after, outputs
+
+    def _run_compiled(
+        self,
+        after: Array,
+        plots: NDArray[Any],
+        dts: Array,
+        sigmas: Array,
+        keep: Sequence[str] = OUTPUTS,
+        threads: int | None = None,
+    ) -> tuple[Array, dict[str, NDArray[Any]]]:
+        from fuzzytrack.lanes import block_loop as passage
+
+        (n_steps, count, n_axes), dtype = plots.shape, plots.dtype.type
+        shapes = {name: plots.shape[:2] if name in _GAINS else plots.shape for name in keep}
+        outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
+        unwanted = np.empty(0, dtype)
+        inputs = [_in_a_row(array, dtype) for array in (plots, dts, sigmas)]
+        given = (
+            *inputs, _strides(dts.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
+            after.reshape(-1),
+            tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
+        )  # fmt: skip
+        results = bool({*keep} & {"innovation", *_GAINS})
+        # A single step is never steady: a stream does not stop to compile what it will not use.
+        steady = self.steady_code(results, dtype) if n_steps > 1 else None
+        step = self.step_code(dtype)
+        run, places = passage.compiled_run(), passage.layout(self.rows)
+        code = (step.address, 0 if steady is None else steady.address, results)
+
+        def part(ends: tuple[int, int]) -> int:
+            buffer = aligned(self.rows.total * BLOCK, dtype)
+            scratch = np.empty(n_axes * BLOCK, dtype)
+            return run(*code, *places, buffer, scratch, n_steps, count, *ends, *given)
+
+        infinite = _in_parts(part, count, _threads(threads, plots.size))
+        if infinite:
+            raise InfinitePlotError
+        return after, outputs
+
+    @property
+    def native(self) -> bool:
+        """Whether there is a compiled step in double precision."""
+        return ("step", np.float64) in self._code
+
+    def compile(self) -> None:
+        """Compile now whatever is ever going to be in double precision."""
+        if self.hop is not None:
+            return
+        from fuzzytrack.lanes import block_loop as passage
+
+        n_axes = self.rows.n_axes
+        lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
+        for results in (True, False):
+            self.steady_code(results)
+        self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], (), 1)
+        hop: Any = passage.compiled_hop()
+        places = (self.step_code().address, n_axes, self.rows.state, self.rows.kept, self.rows.plot)
+        buffer = aligned(self.rows.total * BLOCK)
+        hop(*places, buffer, 1, lanes, one.reshape(-1), 1.0, 1.0, lanes)
+        # The one signature there is, without asking again which it is.
+        self.hop = partial(hop.overloads[hop.signatures[0]].entry_point, *places)
+
+    def step_code(self, dtype: type = np.float64) -> Any:
+        """Compiled step of the recursion, see `fuzzytrack.kernels.compile.entry_point`."""
+        return self._compiled_once(("step", dtype), lambda: self.recursion.step(BLOCK), "vpi")
+
+    def steady_code(self, results: bool, dtype: type = np.float64) -> Any:
+        """Compiled steady function, or None; that with the results of every step or without."""
+        steady = self.recursion.steady
+        if steady is None:
+            return None
+        return self._compiled_once((results, dtype), lambda: steady(BLOCK, results), "vpixpp")
+
+    def _compiled_once(
+        self, key: tuple[object, type], make: Callable[[], Callable[..., Any]], arguments: str
+    ) -> Any:
+        if key not in self._code:
+            # Threads may compile at once; all must go on with the one that is kept.
+            self._code.setdefault(key, entry_point(make(), arguments, key[1]))
+        return self._code[key]
+
+
+def _threads(wanted: int | None, coordinates: int) -> int:
+    if wanted is not None:
+        return wanted
+    if coordinates < THREADS_ABOVE:
+        return 1
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
+
+
+def _in_parts(part: Callable[[tuple[int, int]], int], count: int, threads: int) -> int:
+    """Sum of what `part` returns over all lanes, cut at the ends of blocks."""
+    blocks = -(-count // BLOCK)
+    threads = min(threads, blocks)
+    if threads < 2:
+        return part((0, count))
+    size = BLOCK * -(-blocks // min(blocks, PARTS * threads))
+    ends = [(first, min(first + size, count)) for first in range(0, count, size)]
+    with ThreadPoolExecutor(threads) as pool:
+        return sum(pool.map(part, ends))
+
+
+def _in_a_row(array: NDArray[Any], dtype: type) -> NDArray[Any]:
+    """Its numbers as one type of array, or the passage would be compiled once for each."""
+    # Where a plot is missed, a sigma may be of any size.
+    with np.errstate(over="ignore"):
+        row: NDArray[Any] = np.ascontiguousarray(array, dtype).reshape(-1)
+    row.flags.writeable = False
+    return row
+
+
+def _strides(shape: tuple[int, ...], full: tuple[int, ...]) -> tuple[int, ...]:
+    """Strides, in elements, of a contiguous array that broadcasts to `full`."""
+    strides, step = [], 1
+    for length in reversed(shape):
+        strides.append(step if length > 1 else 0)
+        step *= length
+    return (*(0,) * (len(full) - len(shape)), *reversed(strides))

@@ -1,0 +1,176 @@
+"""What there is to say about a rule base that is right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.gains.wdomain import alpha_beta_from_w, kalata_damping
+from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
+
+__all__ = ["Review", "gains_of", "review"]
+
+Array = NDArray[np.float64]
+
+# Points of the grid on which a rule base is looked at, over all inputs.
+_POINTS = 10_201
+_MAX_CELLS = 1_000_000
+_TABLE_INPUTS = 2
+# What counts as equal, against the largest value.
+_EQUAL = 1e-9
+
+
+@dataclass(frozen=True)
+class Review:
+    """Facts about a rule base, found on a grid over its inputs.
+
+    Attributes
+    ----------
+    rules : RuleBase
+        The rule base.
+    written : tuple of int or None
+        Combinations of sets with a rule, and all of them; None where they are too many to count.
+    silent : float
+        Share of the grid on which no rule fires.
+    ranges : dict of str to (float, float)
+        What each output reaches, and α and β where they follow from the outputs.
+    symmetry : str
+        What becomes of the outputs when all inputs change sign.
+    table_bounds : dict of str to float
+        Error bounds of the interpolation table; empty with more than two inputs.
+    schedules : str
+        How the rule base schedules gains; empty if it does not.
+    """
+
+    rules: RuleBase
+    written: tuple[int, int] | None
+    silent: float
+    ranges: dict[str, tuple[float, float]]
+    symmetry: str
+    table_bounds: dict[str, float]
+    schedules: str
+
+    def as_json(self) -> dict[str, Any]:
+        """Review as JSON prints it."""
+        return {
+            "name": self.rules.name,
+            "inputs": {v.name: len(v.sets) for v in self.rules.inputs},
+            "outputs": {v.name: len(v.sets) for v in self.rules.outputs},
+            "rules": len(self.rules.rules),
+            "combinations_with_a_rule": self.written and self.written[0],
+            "combinations": self.written and self.written[1],
+            "silent": self.silent,
+            "ranges": self.ranges,
+            "symmetry": self.symmetry,
+            "table_bounds": self.table_bounds,
+            "schedules": self.schedules,
+        }
+
+
+def gains_of(outputs: dict[str, Array]) -> dict[str, Array]:
+    """α and β of stiffness, with or without damping; nothing for other outputs."""
+    if "stiffness" not in outputs:
+        return {}
+    stiffness = outputs["stiffness"]
+    # NaN where no rule fires
+    known = ~np.isnan(stiffness + outputs.get("damping", 0.0))
+    damping = (
+        outputs["damping"][known] if "damping" in outputs else kalata_damping(stiffness[known])
+    )
+    gains = {name: np.full(known.shape, np.nan) for name in ("alpha", "beta")}
+    found = alpha_beta_from_w(stiffness[known], damping)
+    for name, values in zip(gains, found, strict=True):
+        gains[name][known] = values
+    return gains
+
+
+def review(rules: RuleBase) -> Review:
+    """Review a rule base.
+
+    Raises
+    ------
+    RuleBaseError, ValueError
+        If it means to schedule gains, and cannot.
+    """
+    settings = dict(rules.scheduler)
+    if settings:
+        FuzzyScheduler(rules)
+    system = FuzzySystem(rules)
+    grid = _grid(rules)
+    values = system.evaluate(grid)
+    return Review(
+        rules=rules,
+        written=_written(rules),
+        silent=float((system.strengths(grid).max(axis=1) == 0).mean()),
+        ranges={name: _ends(v) for name, v in {**values, **gains_of(values)}.items()},
+        symmetry=_symmetry(system, grid, values),
+        table_bounds=_table_bounds(rules),
+        schedules=", ".join(f"{key} {value}" for key, value in settings.items()),
+    )
+
+
+def _grid(rules: RuleBase) -> Array:
+    """Regular grid over the inputs, its middle and ends included, shape (n, n_inputs)."""
+    points = max(3, round(_POINTS ** (1 / len(rules.inputs))) // 2 * 2 + 1)
+    points = min(points, 1001)
+    while points > 3 and points ** len(rules.inputs) > 2 * _POINTS:
+        points -= 2
+    axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs]
+    return np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
+
+
+def _written(rules: RuleBase) -> tuple[int, int] | None:
+    shape = tuple(len(v.sets) for v in rules.inputs)
+    # Python integers, which do not overflow
+    cells = 1
+    for count in shape:
+        cells *= count
+    if cells > _MAX_CELLS:
+        return None
+    has = np.zeros(shape, dtype=bool)
+    for rule in rules.rules:
+        conditions = dict(rule.conditions)
+        has[
+            tuple(
+                v.index(conditions[v.name]) if v.name in conditions else slice(None)
+                for v in rules.inputs
+            )
+        ] = True
+    return int(has.sum()), cells
+
+
+def _ends(values: Array) -> tuple[float, float]:
+    known = values[~np.isnan(values)]
+    return (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
+
+
+def _symmetry(system: FuzzySystem, grid: Array, values: dict[str, Array]) -> str:
+    rules = system.rules
+    if any(v.universe.low != -v.universe.high for v in rules.inputs):
+        return "not compared: the inputs do not reach as far below 0 as above"
+    found = {name: _parity(v, system.evaluate(-grid)[name]) for name, v in values.items()}
+    if len(set(found.values())) == 1:
+        return next(iter(found.values()))
+    return "; ".join(f"{name}: {what}" for name, what in found.items())
+
+
+def _parity(values: Array, mirrored: Array) -> str:
+    if not np.array_equal(np.isnan(values), np.isnan(mirrored)):
+        return "not symmetric"
+    scale = _EQUAL * float(np.nanmax(np.abs(values), initial=0.0))
+    apart = float(np.nanmax(np.abs(values - mirrored), initial=0.0))
+    if apart <= scale:
+        return "symmetric: the outputs stay when all inputs change sign"
+    if float(np.nanmax(np.abs(values + mirrored), initial=0.0)) <= scale:
+        return "symmetric: the outputs change sign with the inputs"
+    return f"not symmetric: an output changes by up to {apart:.2g} with the inputs' signs"
+
+
+def _table_bounds(rules: RuleBase) -> dict[str, float]:
+    # With more inputs a table takes long to measure, and is of little use.
+    return FuzzySystem(rules).table_bounds if len(rules.inputs) <= _TABLE_INPUTS else {}

@@ -1,0 +1,111 @@
+"""Scenarios from files and texts."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from fuzzytrack.errors import ScenarioError
+from fuzzytrack.shipped import Shipped
+from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.simulation.scenario_reader import ScenarioReader
+from fuzzytrack.yamltree import Document
+
+__all__ = [
+    "load_scenario",
+    "loads_scenario",
+    "scenario_path",
+    "scenario_source",
+    "shipped_scenarios",
+]
+
+_SHIPPED = Shipped("scenario", "scenarios", "warship.yaml", ScenarioError)
+
+
+def loads_scenario(text: str | bytes, file: str = "<text>") -> Scenario:
+    """Read a scenario from YAML text.
+
+    Parameters
+    ----------
+    text : str or bytes
+        At most 128 KiB; bytes are UTF-8.
+    file : str
+        Name for messages; files that the scenario names are looked for in its folder.
+
+    Returns
+    -------
+    Scenario
+
+    Raises
+    ------
+    ScenarioError
+        If the text is not a complete and consistent scenario; names file, line, column, the
+        offending word and the allowed words.
+
+    Examples
+    --------
+    >>> from fuzzytrack.simulation.scenario_files import loads_scenario
+    >>> scenario = loads_scenario('''
+    ... scenario: 1
+    ... name: slow turn
+    ... target: {motion: turn, speed: 6, radius: 4500}
+    ... sensors: {sigma: 115}
+    ... ''')
+    >>> scenario.position.shape
+    (20, 2)
+    """
+    return ScenarioReader(Document(text, file, failure=ScenarioError)).scenario()
+
+
+def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
+    """Read a shipped scenario, or a file.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        A name out of `shipped_scenarios`, or a path: anything that ends in ``.yaml`` or ``.yml``,
+        holds a separator or is a path object.
+
+    Returns
+    -------
+    Scenario
+
+    Raises
+    ------
+    ScenarioError
+        If there is no such name, or the file cannot be read, or is no scenario.
+    """
+    path = scenario_path(name_or_path)
+    return loads_scenario(_SHIPPED.read(path), str(path))
+
+
+def scenario_source(name_or_path: str | os.PathLike[str]) -> str:
+    """Paper, or other origin, of a scenario, without making it; as for `load_scenario`."""
+    path = scenario_path(name_or_path)
+    return ScenarioReader(Document(_SHIPPED.read(path), str(path), failure=ScenarioError)).source()
+
+
+def shipped_scenarios() -> tuple[str, ...]:
+    """Names of the scenarios that come with fuzzytrack, in alphabetical order."""
+    return _SHIPPED.names()
+
+
+def scenario_path(name_or_path: str | os.PathLike[str]) -> Path:
+    """Path of a shipped scenario by name, or the path that was given.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        As for `load_scenario`.
+
+    Returns
+    -------
+    Path
+        The file need not exist if a path was given.
+
+    Raises
+    ------
+    ScenarioError
+        If it is the name of no shipped scenario.
+    """
+    return _SHIPPED.path(name_or_path)

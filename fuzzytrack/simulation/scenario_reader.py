@@ -1,0 +1,410 @@
+"""From a located YAML tree to a scenario: every complaint names the place and the word."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.errors import FileError
+from fuzzytrack.io.tracks import read_tracks
+from fuzzytrack.simulation.noise import Noise
+from fuzzytrack.simulation.published import (
+    MANEUVERS,
+    TRACK_SETS,
+    kim_lee,
+    llinas_maneuver,
+    s3,
+    track_set,
+    warship,
+)
+from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario, Sensors
+from fuzzytrack.simulation.sensor_field import SPACINGS, SensorField, sensor_grid
+from fuzzytrack.simulation.trajectories import (
+    constant_acceleration,
+    constant_velocity,
+    turn,
+    turn_with_angular_acceleration,
+    waypoints,
+)
+from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.yamltree import Document, Node, Sequence, quoted
+
+__all__ = ["FORMAT_VERSION", "ScenarioReader"]
+
+Array = NDArray[np.float64]
+#: Times, positions, and the first scan, from 0, that counts unless the file says otherwise.
+Target = tuple[Array, Array, int]
+
+FORMAT_VERSION = "1"
+
+# So that a text cannot ask for more memory than a computer has.
+MAX_SCANS = 100_000
+MAX_TRACKS = 10_000
+MAX_SENSORS = 10_000
+MAX_SIGHTS = 10_000_000
+
+_REQUIRED = ("scenario", "name", "target", "sensors")
+_OPTIONAL = ("source", "start", "score", "process_sigma", "trackers")
+_STARTS = ("as-seen", "interpolate")
+_SIGMA_FROM = ("truth", "plot")
+_TRUTH = {"yes": True, "true": True, "no": False, "false": False}
+
+_MOTION_KEYS = ("heading", "start", "steps", "period")
+#: Motion to its function, and the keys that it needs.
+_MOTIONS: dict[str, tuple[Callable[..., tuple[Array, Array]], tuple[str, ...]]] = {
+    "constant-velocity": (constant_velocity, ("speed",)),
+    "constant-acceleration": (constant_acceleration, ("speed", "acceleration")),
+    "turn": (turn, ("speed", "radius")),
+    "turn-with-angular-acceleration": (
+        turn_with_angular_acceleration,
+        ("speed", "acceleration", "radius"),
+    ),
+}
+_PAPERS: dict[str, Callable[..., tuple[Array, Array]]] = {
+    "kim-lee": kim_lee,
+    "s3": s3,
+    "warship": warship,
+}
+
+_NOISE_KEYS = ("correlation", "freedom")
+_FIELD_NUMBERS = ("reach", "range_sigma", "bearing_sigma")
+_FIELD_KEYS = ("detection", *_NOISE_KEYS, "linear", "sigma_from")
+
+# What may stand beside the key that says what kind of target, or of sensors, it is.
+_TARGET_KEYS = (
+    "speed",
+    "acceleration",
+    "radius",
+    *_MOTION_KEYS,
+    *("leg", "times", "rate", "tracks", "seed", "time", "axes"),
+)
+_SENSOR_KEYS = ("clean", "spacing", "centre", *_FIELD_NUMBERS, *_FIELD_KEYS)
+
+
+class ScenarioReader:
+    """Makes a scenario of a located YAML tree.
+
+    Parameters
+    ----------
+    document : Document
+        The tree, which also words the complaints.
+    """
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    def scenario(self) -> Scenario:
+        """Read the whole document.
+
+        Raises
+        ------
+        ScenarioError
+            At the first thing that is wrong.
+        """
+        document = self.document
+        self._check_version()
+        top = document.fields(document.root, "the scenario", _REQUIRED, _OPTIONAL)
+        time, position, first_scored = self._target(top["target"])
+        if len(time) <= first_scored:
+            raise document.error(
+                top["target"], f"the target has {len(time)} scans; at least {first_scored + 1}"
+            )
+        start = document.choice(top["start"], "start", _STARTS) if "start" in top else "as-seen"
+        if "score" in top:
+            first_scored = self._first_scored(top["score"], len(time))
+        process = top.get("process_sigma")
+        with self._blaming(top, top["target"]):
+            return Scenario(
+                name=document.text(top["name"], "name"),
+                source=document.text(top["source"], "source") if "source" in top else "",
+                time=time,
+                position=position,
+                sensors=self._sensors(top["sensors"], position),
+                first_scored=first_scored,
+                prepare_start=start == "interpolate",
+                process_sigma=None
+                if process is None
+                else document.number(process, "process_sigma"),
+                trackers=self._trackers(top["trackers"]) if "trackers" in top else (),
+            )
+
+    def source(self) -> str:
+        """Read what the file says of its origin, and nothing else; empty if it says nothing."""
+        entries = self.document.entries(self.document.root, "the scenario")
+        return self.document.text(entries["source"][1], "source") if "source" in entries else ""
+
+    def _check_version(self) -> None:
+        entries = self.document.entries(self.document.root, "the scenario")
+        if "scenario" not in entries:
+            raise self.document.error(
+                self.document.root,
+                f"the scenario lacks its format version, 'scenario: {FORMAT_VERSION}'",
+            )
+        self.document.choice(entries["scenario"][1], "format version", (FORMAT_VERSION,))
+
+    def _first_scored(self, node: Node, scans: int) -> int:
+        value = self.document.fields(node, "score", ("from",))["from"]
+        return self._whole(value, "from", 1, scans) - 1
+
+    def _trackers(self, node: Node) -> tuple[str, ...]:
+        specs: list[str] = []
+        for item in self.document.items(node, "trackers"):
+            spec = self.document.text(item, "tracker").strip()
+            if ".yaml" in spec.lower() or ".yml" in spec.lower():
+                spec = self._beside(spec)
+            try:
+                make_tracker(spec)
+            except ValueError as error:
+                raise self.document.error(item, str(error)) from None
+            if spec in specs:
+                raise self.document.error(item, f"tracker {quoted(spec)} is given twice")
+            specs.append(spec)
+        return tuple(specs)
+
+    def _beside(self, name: str) -> str:
+        """Name of a file, which is looked for in the folder of the scenario."""
+        return str(Path(self.document.file).parent / name)
+
+    # ---------------------------------------------------------------- target
+
+    def _target(self, node: Node) -> Target:
+        kinds: dict[str, Callable[[Node], Target]] = {
+            "motion": self._motion,
+            "waypoints": self._waypoints,
+            "maneuver": self._maneuver,
+            "set": self._set,
+            "file": self._file,
+        }
+        return kinds[self._kind(node, "target", kinds, _TARGET_KEYS)](node)
+
+    def _motion(self, node: Node) -> Target:
+        document = self.document
+        word = document.choice(document.entries(node, "target")["motion"][1], "motion", _MOTIONS)
+        make, needed = _MOTIONS[word]
+        fields = document.fields(node, f"a target in {word}", ("motion", *needed), _MOTION_KEYS)
+        given: dict[str, Any] = {}
+        for key, value in fields.items():
+            if key == "steps":
+                given[key] = self._whole(value, key, 3, MAX_SCANS)
+            elif key == "start":
+                given[key] = self._numbers(value, key)
+            elif key == "heading":
+                given[key] = math.radians(document.number(value, key))
+            elif key != "motion":
+                given[key] = document.number(value, key)
+        with self._blaming(fields, node):
+            return *make(**given), 2
+
+    def _waypoints(self, node: Node) -> Target:
+        document = self.document
+        fields = document.fields(node, "target", ("waypoints",), ("leg", "times", "period"))
+        if "leg" in fields and "times" in fields:
+            raise document.error(fields["leg"], "leg says what times say already: give one")
+        points = self._points(fields["waypoints"], "waypoints")
+        leg = document.number(fields["leg"], "leg") if "leg" in fields else 60.0
+        times = self._numbers(fields["times"], "times") if "times" in fields else None
+        period = document.number(fields["period"], "period") if "period" in fields else 60.0
+        last = leg * (len(points) - 1) if times is None else times[-1] - times[0]
+        if period > 0 and last / period > MAX_SCANS:
+            raise document.error(node, f"more than {MAX_SCANS} scans; make the period longer")
+        with self._blaming({"points": fields["waypoints"], **fields}, node):
+            return *waypoints(points, times=times, leg=leg, period=period), 2
+
+    def _maneuver(self, node: Node) -> Target:
+        document = self.document
+        allowed = (*MANEUVERS, *_PAPERS)
+        entry = document.entries(node, "target")["maneuver"][1]
+        word = document.choice(entry, "maneuver", allowed)
+        optional = ("rate",) if word == "warship" else ()
+        fields = document.fields(node, f"a target in maneuver {word}", ("maneuver",), optional)
+        if word in MANEUVERS:
+            return *llinas_maneuver(word), 2
+        given = {"rate": document.number(fields["rate"], "rate")} if "rate" in fields else {}
+        with self._blaming(fields, node):
+            return *_PAPERS[word](**given), 2
+
+    def _set(self, node: Node) -> Target:
+        fields = self.document.fields(node, "a set of targets", ("set", "tracks"), ("seed",))
+        word = self.document.choice(fields["set"], "set", TRACK_SETS)
+        tracks = self._whole(fields["tracks"], "tracks", 1, MAX_TRACKS)
+        seed = self._whole(fields["seed"], "seed", 0, 2**53) if "seed" in fields else 0
+        found = track_set(word, tracks, seed)
+        return found.time, found.position, found.first_scored
+
+    def _file(self, node: Node) -> Target:
+        document = self.document
+        fields = document.fields(node, "a target from a file", ("file",), ("time", "axes"))
+        name = self._beside(document.text(fields["file"], "file"))
+        time = document.text(fields["time"], "time") if "time" in fields else None
+        axes = None
+        if "axes" in fields:
+            axes = [document.text(item, "axis") for item in document.items(fields["axes"], "axes")]
+        try:
+            (track,) = read_tracks(name, time=time, axes=axes).tracks
+        except OSError as error:
+            raise document.error(fields["file"], f"cannot read {name}: {error.strerror}") from None
+        except ValueError as error:
+            raise document.error(node, str(error)) from None
+        if len(track.time) > MAX_SCANS:
+            raise document.error(fields["file"], f"{name} has more than {MAX_SCANS} scans")
+        return track.time, track.plots, 2
+
+    # ---------------------------------------------------------------- sensors
+
+    def _sensors(self, node: Node, position: Array) -> Sensors:
+        kinds = {"sigma": self._noise, "grid": self._grid, "positions": self._scattered}
+        kind = self._kind(node, "sensors", kinds, _SENSOR_KEYS)
+        n_axes = position.shape[-1]
+        if kind != "sigma" and n_axes != 2:
+            raise self.document.error(
+                node, f"a field of sensors is for targets with two axes, this one has {n_axes}"
+            )
+        return kinds[kind](node, position)
+
+    def _noise(self, node: Node, position: Array) -> Sensors:
+        document = self.document
+        optional = ("detection", "clean", *_NOISE_KEYS)
+        fields = document.fields(node, "sensors", ("sigma",), optional)
+        sigma = self._each(fields["sigma"], "sigma")
+        if isinstance(sigma, list) and len(sigma) != position.shape[-1]:
+            raise document.error(
+                fields["sigma"],
+                f"sigma has {len(sigma)} numbers, the target {position.shape[-1]} axes",
+            )
+        detection = (
+            document.number(fields["detection"], "detection") if "detection" in fields else 1
+        )
+        clean = self._whole(fields["clean"], "clean", 0, MAX_SCANS) if "clean" in fields else 0
+        with self._blaming(fields, node):
+            return PlotNoise(sigma, self._kind_of_noise(fields), detection, clean)  # type: ignore[arg-type]
+
+    def _grid(self, node: Node, position: Array) -> Sensors:
+        document = self.document
+        required = ("grid", "spacing", *_FIELD_NUMBERS)
+        fields = document.fields(node, "a grid of sensors", required, ("centre", *_FIELD_KEYS))
+        n = self._whole(fields["grid"], "grid", 1, math.isqrt(MAX_SENSORS))
+        spacing = self._spacing(fields["spacing"])
+        given = self._field_numbers(fields)
+        if "centre" in fields:
+            given["centre"] = self._numbers(fields["centre"], "centre")
+        with self._blaming(fields, node):
+            return self._field(fields, node, sensor_grid(n, spacing, **given), position)
+
+    def _scattered(self, node: Node, position: Array) -> Sensors:
+        required = ("positions", *_FIELD_NUMBERS)
+        fields = self.document.fields(node, "sensors", required, _FIELD_KEYS)
+        places = self._points(fields["positions"], "positions")
+        with self._blaming({"position": fields["positions"], **fields}, node):
+            field = SensorField(places, **self._field_numbers(fields))
+            return self._field(fields, node, field, position)
+
+    def _field(
+        self, fields: Mapping[str, Node], node: Node, field: SensorField, position: Array
+    ) -> Sensors:
+        document = self.document
+        places = position.reshape(-1, 2)
+        if len(places) * len(field.position) > MAX_SIGHTS:
+            raise document.error(
+                node,
+                f"{len(field.position)} sensors and {len(places)} positions of targets are too "
+                f"many: {MAX_SIGHTS} pairs at most",
+            )
+        if not field.sees(places).any():
+            raise document.error(node, "no sensor ever has the target within its reach")
+        given: dict[str, Any] = {}
+        if "linear" in fields:
+            given["linear"] = _TRUTH[document.choice(fields["linear"], "linear", _TRUTH)]
+        if "sigma_from" in fields:
+            given["sigma_from"] = document.choice(fields["sigma_from"], "sigma_from", _SIGMA_FROM)
+        return FieldSensors(field, self._kind_of_noise(fields), **given)
+
+    def _field_numbers(self, fields: Mapping[str, Node]) -> dict[str, Any]:
+        given: dict[str, Any] = {key: self._each(fields[key], key) for key in _FIELD_NUMBERS}
+        bearing = np.asarray(given["bearing_sigma"])
+        # Here, since degrees are what the file holds.
+        if not (bearing > 0).all():
+            worst = f"{bearing.min():g}"
+            raise self.document.error(
+                fields["bearing_sigma"], f"bearing_sigma must be > 0, got {worst}"
+            )
+        given["bearing_sigma"] = np.radians(bearing)
+        if "detection" in fields:
+            given["detection"] = self.document.number(fields["detection"], "detection")
+        return given
+
+    def _spacing(self, node: Node) -> float:
+        word = self.document.text(node, "spacing")
+        if word[0].isalpha():
+            return SPACINGS[self.document.choice(node, "spacing", SPACINGS)]
+        return self.document.number(node, "spacing")
+
+    def _kind_of_noise(self, fields: Mapping[str, Node]) -> Noise:
+        given = {
+            key: self.document.number(fields[key], key) for key in _NOISE_KEYS if key in fields
+        }
+        return Noise(**given)
+
+    # ---------------------------------------------------------------- questions
+
+    def _kind(self, node: Node, role: str, kinds: Collection[str], known: Collection[str]) -> str:
+        """The one key of a mapping that says what kind of thing it is."""
+        entries = self.document.entries(node, role)
+        found = [word for word in entries if word in kinds]
+        if len(found) > 1:
+            raise self.document.error(
+                entries[found[1]][0],
+                f"{role} has {found[0]!r} already; it takes one of {', '.join(kinds)}",
+            )
+        if not found:
+            for word, (key, _) in entries.items():
+                if word not in known:
+                    raise self.document.unknown(key, word, f"key in {role}:", tuple(kinds))
+            raise self.document.error(node, f"{role} needs one of {', '.join(kinds)}")
+        return found[0]
+
+    @contextmanager
+    def _blaming(self, fields: Mapping[str, Node], node: Node) -> Iterator[None]:
+        """Give complaints of the model the place of the key they name, else of `node`."""
+        try:
+            # What overflows is complained of as infinite.
+            with np.errstate(all="ignore"):
+                yield
+        except FileError:
+            raise
+        except ValueError as error:
+            named = str(error).partition(" ")[0].rstrip(":")
+            raise self.document.error(fields.get(named, node), str(error)) from None
+
+    def _whole(self, node: Node, role: str, low: int, high: int) -> int:
+        value = self.document.whole(node, role)
+        if not low <= value <= high:
+            raise self.document.error(
+                node, f"{role} must be a whole number from {low} to {high}, got {value}"
+            )
+        return value
+
+    def _numbers(self, node: Node, role: str) -> list[float]:
+        return [self.document.number(item, role) for item in self.document.items(node, role)]
+
+    def _each(self, node: Node, role: str) -> float | list[float]:
+        """A number, or one for each axis or sensor."""
+        if isinstance(node, Sequence):
+            return self._numbers(node, role)
+        return self.document.number(node, role)
+
+    def _points(self, node: Node, role: str) -> list[list[float]]:
+        """Points, all with as many coordinates as the first."""
+        items = self.document.items(node, role)
+        points = [self._numbers(item, f"each of the {role}") for item in items]
+        for item, point in zip(items, points, strict=True):
+            if len(point) != len(points[0]):
+                raise self.document.error(
+                    item, f"has {len(point)} coordinates, the first of the {role} {len(points[0])}"
+                )
+        return points

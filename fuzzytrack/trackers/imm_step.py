@@ -1,0 +1,371 @@
+"""The recursion of interacting multiple models, for `fuzzytrack.trackers.imm`.
+
+`step_function` holds all of it, as that of `fuzzytrack.trackers.alpha_beta_step` does for its
+tracker: plain Python over a list and compiled over arrays, with the same result to the last bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from fuzzytrack.lanes.layout import Rows
+
+if TYPE_CHECKING:
+    from fuzzytrack.trackers.imm import InteractingModels
+
+__all__ = ["MODEL", "PROBABILITIES", "imm_rows", "step_function"]
+
+#: Model of an axis: x, v, a, and P by rows, without what is below its diagonal.
+Model = tuple[float, float, float, float, float, float, float, float, float]
+
+#: The memory: two probabilities, then for each axis the quiet model and the maneuvering one.
+PROBABILITIES, MODEL = 2, 9
+
+# Least probability, for a model that once had a chance to come back.
+_FLOOR = 1e-12
+# What a plot may say of the models: exp(±300) times 1e±50 leaves room for the probabilities.
+_EXPONENT, _RATIO = 300.0, 1e100
+
+
+def imm_rows(n_axes: int) -> Rows:
+    """Layout of a lane."""
+    return Rows(n_axes, PROBABILITIES + 2 * MODEL * n_axes)
+
+
+def _exp(x: float) -> float:
+    """Exponential for -300 <= x <= 300, to a relative 1e-13.
+
+    Compilers take theirs from one library or another, which differ in the last bit; this one is the
+    same everywhere, and is worked out for neighbouring lanes at once. It is the series of
+    exp(x/1024) - 1, squared up ten times without losing what is small.
+    """
+    r = (x if x > 0.0 else -x) / 1024.0
+    y = 1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r / 479001600))
+    y = 1 / 120 + r * (1 / 720 + r * (1 / 5040 + r * (1 / 40320 + r * y)))
+    y = r * (1.0 + r * (1 / 2 + r * (1 / 6 + r * (1 / 24 + r * y))))
+    for _ in range(10):
+        y = y * (2.0 + y)
+    return 1.0 / (1.0 + y) if x < 0.0 else 1.0 + y
+
+
+def _mixed(own: Model, other: Model, share: float) -> Model:
+    """Mean and covariance of a mixture of two models, with the share of the other one."""
+    x, v, a, p11, p12, p13, p22, p23, p33 = own
+    x2, v2, a2, q11, q12, q13, q22, q23, q33 = other
+    dx, dv, da = x2 - x, v2 - v, a2 - a
+    spread = share * (1.0 - share)
+    return (
+        x + share * dx,
+        v + share * dv,
+        a + share * da,
+        p11 + share * (q11 - p11) + spread * dx * dx,
+        p12 + share * (q12 - p12) + spread * dx * dv,
+        p13 + share * (q13 - p13) + spread * dx * da,
+        p22 + share * (q22 - p22) + spread * dv * dv,
+        p23 + share * (q23 - p23) + spread * dv * da,
+        p33 + share * (q33 - p33) + spread * da * da,
+    )
+
+
+def _predicted(model: Model, dt: float, q: float, accelerates: bool) -> Model:
+    """Model a time step later, with process noise GGᵀq."""
+    x, v, a, p11, p12, p13, p22, p23, p33 = model
+    a = a if accelerates else 0.0
+    p13 = p13 if accelerates else 0.0
+    p23 = p23 if accelerates else 0.0
+    p33 = p33 if accelerates else 0.0
+    g = 0.5 * dt * dt
+    # Rows of ΦP, then ΦPΦᵀ + Q.
+    a11 = p11 + dt * p12 + g * p13
+    a12 = p12 + dt * p22 + g * p23
+    a13 = p13 + dt * p23 + g * p33
+    a22 = p22 + dt * p23
+    a23 = p23 + dt * p33
+    p11 = a11 + dt * a12 + g * a13 + q * g * g
+    p13 = a13 + q * g if accelerates else 0.0
+    p23 = a23 + q * dt if accelerates else 0.0
+    p33 = p33 + q if accelerates else 0.0
+    return (
+        x + v * dt + a * g,
+        v + a * dt,
+        a,
+        p11 if p11 > 0.0 else 0.0,
+        a12 + dt * a13 + q * g * dt,
+        p13,
+        a22 + dt * a23 + q * dt * dt,
+        p23,
+        p33,
+    )
+
+
+def _corrected(
+    model: Model, e: float, s: float, r: float, gains: tuple[float, float, float]
+) -> Model:
+    """Model after a plot of variance `r` with innovation `e` of variance `s`; Joseph form."""
+    x, v, a, p11, p12, p13, p22, p23, p33 = model
+    k1, k2, k3 = gains
+    rest = 1.0 - k1
+    n22 = p22 - k2 * (2.0 * p12 - k2 * s)
+    n33 = p33 - k3 * (2.0 * p13 - k3 * s)
+    return (
+        x + k1 * e,
+        v + k2 * e,
+        a + k3 * e,
+        rest * rest * p11 + k1 * k1 * r,
+        rest * (p12 - k2 * p11) + k1 * k2 * r,
+        rest * (p13 - k3 * p11) + k1 * k3 * r,
+        # Rounding after a long gap may take more than there is.
+        n22 if n22 > 0.0 else 0.0,
+        p23 - k2 * p13 - k3 * (p12 - k2 * s),
+        n33 if n33 > 0.0 else 0.0,
+    )
+
+
+def _gains(
+    model: Model, s: float, seen: bool, unknown: bool, gap: float
+) -> tuple[float, float, float]:
+    """K of a model; the one that takes the velocity from two plots while it is unknown."""
+    k1 = 1.0 if unknown else model[3] / s
+    k2 = 1.0 / gap if unknown else model[4] / s
+    k3 = 0.0 if unknown else model[5] / s
+    return k1 if seen else 0.0, k2 if seen else 0.0, k3 if seen else 0.0
+
+
+def _started(
+    model: Model, z: float, r: float, velocity: float, acceleration: float, first: bool
+) -> Model:
+    """Model after the first plot of a track, with variances; or the one there is."""
+    x, v, a, p11, p12, p13, p22, p23, p33 = model
+    return (
+        z if first else x,
+        0.0 if first else v,
+        0.0 if first else a,
+        r if first else p11,
+        0.0 if first else p12,
+        0.0 if first else p13,
+        velocity if first else p22,
+        0.0 if first else p23,
+        acceleration if first else p33,
+    )
+
+
+def _between(low: float, value: float, high: float) -> float:
+    value = value if value > low else low
+    return value if value < high else high
+
+
+def _access(stride: int) -> tuple[Callable[[Any, int], Model], Callable[[Any, int, Model], None]]:
+    """Functions that read and write a model, its numbers `stride` apart."""
+
+    def read(b: Any, at: int) -> Model:
+        return (
+            b[at], b[at + stride], b[at + 2 * stride],
+            b[at + 3 * stride], b[at + 4 * stride], b[at + 5 * stride],
+            b[at + 6 * stride], b[at + 7 * stride], b[at + 8 * stride],
+        )  # fmt: skip
+
+    def write(b: Any, at: int, model: Model) -> None:
+        (
+            b[at], b[at + stride], b[at + 2 * stride],
+            b[at + 3 * stride], b[at + 4 * stride], b[at + 5 * stride],
+            b[at + 6 * stride], b[at + 7 * stride], b[at + 8 * stride],
+        ) = model  # fmt: skip
+
+    return read, write
+
+
+def step_function(
+    tracker: InteractingModels, rows: Rows, stride: int
+) -> Callable[[Any, int], None]:
+    """Function that does one time step of the first lanes of a buffer, in place.
+
+    It goes through all lanes five times, once for each thing to be done to them, and inside of the
+    axes: so the compiler can work on neighbouring lanes at once. What one passage leaves to the
+    next lies in rows whose own numbers come later.
+    """
+    begin, judge, end = _lane_passages(tracker, rows, stride)
+    predict, correct = _axis_passages(tracker, rows, stride)
+    n_axes = rows.n_axes
+
+    def step(b: Any, count: int) -> None:
+        begin(b, count)
+        for j in range(n_axes):
+            predict(b, count, j)
+        judge(b, count)
+        for j in range(n_axes):
+            correct(b, count, j)
+        end(b, count)
+
+    return step
+
+
+def _lane_passages(
+    tracker: InteractingModels, rows: Rows, stride: int
+) -> tuple[Callable[[Any, int], None], Callable[[Any, int], None], Callable[[Any, int], None]]:
+    """What is done once a lane: before the models are predicted, corrected, and at the end."""
+    n_axes, nan = rows.n_axes, math.nan
+    quiet_stay, maneuver_stay = tracker.quiet_stay, tracker.maneuver_stay
+    first_count = 1.0 if tracker.velocity_sigma is None else 2.0
+    floor = _FLOOR if 0.0 < tracker.start_probability < 1.0 else 0.0
+    quiet_row, maneuver_row, gains_row = rows.memory, rows.memory + 1, rows.gains
+    plot_row, dt_row, gap_row, plots_row = rows.plot, rows.dt, rows.gap, rows.plots
+    quiet_share_row, maneuver_share_row = rows.gains, rows.gains + 1
+    ratio_row, exponent_row = rows.gains + 2, rows.change
+
+    def begin(b: Any, count: int) -> None:
+        """Switch probabilities, and the share of the other model where each starts."""
+        for i in range(min(count, stride)):
+            dt = b[dt_row * stride + i]
+            # The first step of a track has no length; its value is not used.
+            dt = dt if dt > 0.0 else 1.0
+            b[dt_row * stride + i] = dt
+            b[gap_row * stride + i] = b[gap_row * stride + i] + dt
+            seen = True
+            for j in range(n_axes):
+                z = b[(plot_row + j) * stride + i]
+                seen = seen & (z == z)
+            for j in range(n_axes):
+                z = b[(plot_row + j) * stride + i]
+                b[(plot_row + j) * stride + i] = z if seen else nan
+
+            running = b[plots_row * stride + i] >= 2.0
+            was_quiet = b[quiet_row * stride + i]
+            was_maneuver = b[maneuver_row * stride + i]
+            to_maneuver = (1.0 - quiet_stay) * was_quiet
+            to_quiet = (1.0 - maneuver_stay) * was_maneuver
+            quiet = quiet_stay * was_quiet + to_quiet
+            maneuver = maneuver_stay * was_maneuver + to_maneuver
+            quiet_share = to_quiet / (quiet if quiet > 0.0 else 1.0)
+            maneuver_share = to_maneuver / (maneuver if maneuver > 0.0 else 1.0)
+            b[quiet_share_row * stride + i] = quiet_share if running else 0.0
+            b[maneuver_share_row * stride + i] = maneuver_share if running else 0.0
+            b[quiet_row * stride + i] = quiet if running else was_quiet
+            b[maneuver_row * stride + i] = maneuver if running else was_maneuver
+            b[ratio_row * stride + i] = 1.0
+            b[exponent_row * stride + i] = 0.0
+
+    def judge(b: Any, count: int) -> None:
+        """Probabilities after the plot."""
+        for i in range(min(count, stride)):
+            z = b[plot_row * stride + i]
+            update = (z == z) & (b[plots_row * stride + i] >= 2.0)
+            quiet, maneuver = b[quiet_row * stride + i], b[maneuver_row * stride + i]
+            ratio = math.sqrt(_between(1.0 / _RATIO, b[ratio_row * stride + i], _RATIO))
+            exponent = _between(-_EXPONENT, b[exponent_row * stride + i], _EXPONENT)
+            odds = maneuver * (ratio * _exp(exponent))
+            total = quiet + odds
+            after_quiet = _between(floor, quiet / total, 1.0 - floor)
+            after_maneuver = _between(floor, odds / total, 1.0 - floor)
+            b[quiet_row * stride + i] = after_quiet if update else quiet
+            b[maneuver_row * stride + i] = after_maneuver if update else maneuver
+            for k in range(3):
+                b[(gains_row + k) * stride + i] = 0.0
+
+    def end(b: Any, count: int) -> None:
+        """Count the plot, and scale the gains."""
+        for i in range(min(count, stride)):
+            z, dt = b[plot_row * stride + i], b[dt_row * stride + i]
+            plots = b[plots_row * stride + i]
+            seen = z == z
+            update = seen & (plots >= 2.0)
+            counted = plots + 1.0 if plots > 0.0 else first_count
+            counted = counted if counted < 2.0 else 2.0
+            b[plots_row * stride + i] = counted if seen else plots
+            b[gap_row * stride + i] = 0.0 if seen else b[gap_row * stride + i]
+            alpha = b[gains_row * stride + i] / n_axes
+            beta = b[(gains_row + 1) * stride + i] * dt / n_axes
+            gamma = 2.0 * b[(gains_row + 2) * stride + i] * dt * dt / n_axes
+            b[gains_row * stride + i] = alpha if update else nan
+            b[(gains_row + 1) * stride + i] = beta if update else nan
+            b[(gains_row + 2) * stride + i] = gamma if update else nan
+
+    return begin, judge, end
+
+
+def _axis_passages(
+    tracker: InteractingModels, rows: Rows, stride: int
+) -> tuple[Callable[[Any, int, int], None], Callable[[Any, int, int], None]]:
+    """What is done for each axis of a lane: prediction of the models, and their correction."""
+    nan = math.nan
+    quiet_q, maneuver_q = tracker.quiet_sigma**2, tracker.maneuver_sigma**2
+    accelerates = tracker.maneuver == "ca"
+    fixed = tracker.sigma_w is not None
+    variance = 0.0 if tracker.sigma_w is None else tracker.sigma_w**2
+    start_22 = 0.0 if tracker.velocity_sigma is None else tracker.velocity_sigma**2
+    start_sigma = tracker.acceleration_sigma
+    start_33 = maneuver_q if start_sigma is None else start_sigma**2
+    start_33 = start_33 if accelerates else 0.0
+    read, write = _access(stride)
+    models_row, maneuver_row = rows.memory + PROBABILITIES, rows.memory + 1
+    x_row, v_row, a_row = rows.position, rows.velocity, rows.acceleration
+    last_row, gap_row, plots_row, gains_row = rows.last_plot, rows.gap, rows.plots, rows.gains
+    prediction_row, innovation_row = rows.predicted, rows.innovation
+    plot_row, sigma_row, dt_row, noise_row = rows.plot, rows.sigma, rows.dt, rows.noise
+    quiet_share_row, maneuver_share_row = rows.gains, rows.gains + 1
+    ratio_row, exponent_row = rows.gains + 2, rows.change
+
+    def predict(b: Any, count: int, j: int) -> None:
+        """Mix and predict; likelihood of the maneuvering model over that of the quiet one."""
+        quiet_at = (models_row + 2 * j * MODEL) * stride
+        maneuver_at = quiet_at + MODEL * stride
+        for i in range(min(count, stride)):
+            dt = b[dt_row * stride + i]
+            one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
+            mixed_one = _mixed(one, two, b[quiet_share_row * stride + i])
+            mixed_two = _mixed(two, one, b[maneuver_share_row * stride + i])
+            one = _predicted(mixed_one, dt, quiet_q, False)
+            two = _predicted(mixed_two, dt, maneuver_q, accelerates)
+            write(b, quiet_at + i, one)
+            write(b, maneuver_at + i, two)
+
+            running = b[plots_row * stride + i] >= 2.0
+            z, sigma = b[(plot_row + j) * stride + i], b[(sigma_row + j) * stride + i]
+            update = (z == z) & running
+            prediction = one[0] + b[maneuver_row * stride + i] * (two[0] - one[0])
+            b[(prediction_row + j) * stride + i] = prediction if running else nan
+            b[(innovation_row + j) * stride + i] = z - prediction if update else nan
+
+            r = variance if fixed else sigma * sigma
+            r = r if z == z else 1.0
+            b[(noise_row + j) * stride + i] = r
+            s_one, s_two = one[3] + r, two[3] + r
+            e_one, e_two = z - one[0], z - two[0]
+            exponent = 0.5 * (e_one * e_one / s_one - e_two * e_two / s_two)
+            ratio = b[ratio_row * stride + i]
+            b[ratio_row * stride + i] = ratio * (s_one / s_two)
+            b[exponent_row * stride + i] = b[exponent_row * stride + i] + exponent
+
+    def correct(b: Any, count: int, j: int) -> None:
+        """Start or correct the models, and take their mean."""
+        quiet_at = (models_row + 2 * j * MODEL) * stride
+        maneuver_at = quiet_at + MODEL * stride
+        for i in range(min(count, stride)):
+            one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
+            z, r = b[(plot_row + j) * stride + i], b[(noise_row + j) * stride + i]
+            plots, gap = b[plots_row * stride + i], b[gap_row * stride + i]
+            seen, unknown = z == z, plots == 1.0
+            s_one, s_two = one[3] + r, two[3] + r
+            e_one, e_two = z - one[0] if seen else 0.0, z - two[0] if seen else 0.0
+            gains_one = _gains(one, s_one, seen, unknown, gap)
+            gains_two = _gains(two, s_two, seen, unknown, gap)
+            one = _corrected(one, e_one, s_one, r, gains_one)
+            two = _corrected(two, e_two, s_two, r, gains_two)
+            first = seen & (plots == 0.0)
+            one = _started(one, z, r, start_22, 0.0, first)
+            two = _started(two, z, r, start_22, start_33, first)
+            write(b, quiet_at + i, one)
+            write(b, maneuver_at + i, two)
+
+            maneuver, last = b[maneuver_row * stride + i], b[(last_row + j) * stride + i]
+            for k in range(3):
+                gain = gains_one[k] + maneuver * (gains_two[k] - gains_one[k])
+                b[(gains_row + k) * stride + i] = b[(gains_row + k) * stride + i] + gain
+            x = one[0] + maneuver * (two[0] - one[0])
+            b[(x_row + j) * stride + i] = x if seen | (plots > 0.0) else nan
+            b[(v_row + j) * stride + i] = one[1] + maneuver * (two[1] - one[1])
+            b[(a_row + j) * stride + i] = one[2] + maneuver * (two[2] - one[2])
+            b[(last_row + j) * stride + i] = z if seen else last
+
+    return predict, correct

@@ -1,0 +1,67 @@
+"""What LLVM is told of the loops of a compiled function."""
+
+import numba
+import numpy as np
+import pytest
+from llvmlite import ir
+
+from fuzzytrack.kernels.compile import entry_point, promise_independent_turns
+from fuzzytrack.kernels.llvm import _branches_back
+
+
+def function(targets):
+    """Function of empty blocks that lead to those of the given numbers; () ends it."""
+    made = ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "f")
+    blocks = [made.append_basic_block() for _ in targets]
+    for block, numbers in zip(blocks, targets, strict=True):
+        if numbers is None:
+            continue
+        builder, others = ir.IRBuilder(block), [blocks[n] for n in numbers]
+        if not others:
+            builder.ret_void()
+        elif len(others) == 1:
+            builder.branch(others[0])
+        else:
+            builder.cbranch(ir.Constant(ir.IntType(1), 1), *others)
+    return blocks
+
+
+@pytest.mark.parametrize(
+    ("targets", "back"),
+    [
+        ([()], []),
+        ([(1, 2), (3,), (3,), ()], []),
+        # A loop, whose beginning is not written yet, with two ways through a turn.
+        ([None, (2,), (3, 6), (4, 5), (5,), (2,), ()], [5]),
+        # A loop within a loop.
+        ([(1,), (2, 5), (3, 4), (2,), (1,), ()], [3, 4]),
+        # A turn that begins anew at once.
+        ([(1,), (1, 2), ()], [1]),
+    ],
+)
+def test_branches_back(targets, back):
+    blocks = function(targets)
+    found = [blocks.index(branch.parent) for branch in _branches_back(blocks)]
+    assert sorted(found) == back
+
+
+def test_the_promise_reaches_the_compiler(monkeypatch, tmp_path):
+    # Code from disk cannot be read.
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+
+    def doubled(numbers, count):
+        for i in range(count):
+            numbers[i + 1] = 2.0 * numbers[i]
+
+    def promised(numbers, count):
+        for i in range(count):
+            numbers[i + 1] = 2.0 * numbers[i]
+        promise_independent_turns()
+
+    wide = {}
+    for made in (doubled, promised):
+        made(np.zeros(20), 5)
+        code = entry_point(made, "vpi")._library.get_llvm_str()
+        wide[made] = "x double>" in code
+    # Each turn takes up what the one before left: only a (false) promise makes vectors of it.
+    assert wide == {doubled: False, promised: True}

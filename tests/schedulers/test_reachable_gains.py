@@ -1,0 +1,98 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.fuzzy.rulebase import Consequent, Operators
+from fuzzytrack.schedulers.reachable_gains import certify, reachable_gains
+
+
+@pytest.mark.parametrize(
+    ("name", "reach", "verdict", "rate"),
+    [
+        ("stiffness-damping", "universe", "certified", 0.815936),
+        ("stiffness-damping", "rules", "certified", 0.799842),
+        ("stiffness-damping-cog", "universe", "certified", 0.815936),
+        ("stiffness-damping-wide", "universe", "refuted", 1.516598),
+        ("stiffness-damping-wide", "rules", "refuted", 1.364012),
+        ("omega-schedule", "universe", "certified", 0.836665),
+    ],
+)
+def test_shipped_rule_bases(name, reach, verdict, rate):
+    found = certify(ft.load_rulebase(name), reach=reach)
+    assert found.verdict == verdict
+    assert found.rate == pytest.approx(rate, abs=1e-6)
+
+
+def test_gains_themselves():
+    assert certify([[0.5377, 0.2018], [0.6, 0.3]]).verdict == "certified"
+    rules = ft.load_rulebase("chan-style")
+    box = reachable_gains(rules)
+    assert box.tolist() == [[0.3, 0.1], [0.3, 0.6], [0.9, 0.1], [0.9, 0.6]]
+    assert len(np.unique(reachable_gains(rules, "rules"), axis=0)) == 5
+
+
+@pytest.mark.parametrize("reach", ["universe", "rules"])
+def test_everything_that_is_scheduled_lies_in_the_hull(reach):
+    from scipy.spatial import Delaunay
+
+    rules = ft.load_rulebase("stiffness-damping")
+    error, rate = np.random.default_rng(4).uniform(-1, 1, (2, 2000))
+    gains = ft.FuzzySystem(rules)(E=error, dE=rate)
+    points = np.stack(ft.alpha_beta_from_w(gains["stiffness"], gains["damping"]), axis=1)
+    hull = Delaunay(reachable_gains(rules, reach))
+    # Corners of the table lie on the hull itself.
+    middle = hull.points.mean(axis=0)
+    assert (hull.find_simplex(middle + (points - middle) * (1 - 1e-9)) >= 0).all()
+
+
+@pytest.mark.parametrize("reach", ["universe", "rules"])
+def test_kalatas_curve_lies_in_the_hull(reach):
+    from scipy.spatial import Delaunay
+
+    rules = ft.load_rulebase("omega-schedule")
+    corners = reachable_gains(rules, reach)
+    # ω₀ = √λ/2
+    curve = np.stack(ft.gains.kalata((2 * np.linspace(0.29, 0.778, 500)) ** 2), axis=1)
+    hull = Delaunay(corners)
+    middle = hull.points.mean(axis=0)
+    assert (hull.find_simplex(middle + (curve - middle) * (1 - 1e-9)) >= 0).all()
+    # It is no larger than needed: its corners are next to the curve, or on it.
+    apart = np.linalg.norm(corners[:, None] - curve, axis=2).min(axis=1)
+    assert apart.max() < 2e-3
+
+
+def test_an_output_that_reaches_zero_stiffness():
+    rules = ft.load_rulebase("omega-schedule")
+    stiffness = replace(rules.outputs[0], universe=replace(rules.outputs[0].universe, low=0.0))
+    corners = reachable_gains(replace(rules, outputs=(stiffness,)))
+    assert corners.min() == 0
+    assert np.abs(corners - reachable_gains(rules, "rules")[:, None]).max() > 0.3
+
+
+def test_a_default_is_reached_too():
+    rules = ft.load_rulebase("stiffness-damping")
+    outputs = tuple(replace(v, default=v.universe.low) for v in rules.outputs)
+    more = reachable_gains(replace(rules, outputs=outputs), "rules")
+    corner = ft.alpha_beta_from_w(0.25, 0.54)
+    assert np.abs(more - corner).sum(axis=1).min() < 1e-12
+
+
+def test_what_cannot_be_certified():
+    with pytest.raises(ft.RuleBaseError, match="tipper cannot be certified: needed are outputs"):
+        certify(ft.load_rulebase("tipper"))
+    rules = ft.load_rulebase("stiffness-damping")
+    with pytest.raises(ValueError, match="reach: unknown 'all'; one of universe, rules"):
+        certify(rules, reach="all")
+    clipped = replace(rules, operators=Operators("min", "max"))
+    with pytest.raises(ft.RuleBaseError, match="use reach 'universe'"):
+        certify(clipped, reach="rules")
+    first = rules.rules[0]
+    unsure = replace(
+        first,
+        consequents=(Consequent("stiffness", "S", 0.5), Consequent("damping", "L", 1.0)),
+    )
+    uneven = replace(rules, rules=(unsure, *rules.rules[1:]))
+    with pytest.raises(ft.RuleBaseError, match="as sure of stiffness as of damping"):
+        certify(uneven, reach="rules")

@@ -1,0 +1,464 @@
+import math
+import random
+
+import numpy as np
+import pytest
+
+from fuzzytrack.errors import ScenarioError
+from fuzzytrack.simulation.noise import Noise, noisy_plots, streams
+from fuzzytrack.simulation.published import kim_lee, llinas_maneuver, s3, track_set, warship
+from fuzzytrack.simulation.scenario import PlotNoise
+from fuzzytrack.simulation.scenario_files import (
+    load_scenario,
+    loads_scenario,
+    scenario_path,
+    scenario_source,
+    shipped_scenarios,
+)
+from fuzzytrack.simulation.sensor_field import canonical_field
+from fuzzytrack.simulation.trajectories import (
+    constant_acceleration,
+    constant_velocity,
+    turn,
+    turn_with_angular_acceleration,
+    waypoints,
+)
+from fuzzytrack.testbed.montecarlo import monte_carlo
+
+HEAD = "scenario: 1\nname: a test\n"
+SENSORS = "sensors: {sigma: 10}\n"
+TARGET = "target: {maneuver: M1}\n"
+
+
+def with_target(text):
+    return loads_scenario(f"{HEAD}target: {text}\n{SENSORS}")
+
+
+def with_sensors(text, target="{maneuver: M1}"):
+    return loads_scenario(f"{HEAD}target: {target}\nsensors: {text}\n").sensors
+
+
+def complaint(text):
+    with pytest.raises(ScenarioError) as caught:
+        loads_scenario(text, "s.yaml")
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+# -------------------------------------------------------------------- shipped
+
+
+@pytest.mark.parametrize("name", shipped_scenarios())
+def test_shipped_scenarios_run(name):
+    scenario = load_scenario(name)
+    assert scenario.name == name
+    assert scenario.source == scenario_source(name) != ""
+    assert len(scenario.trackers) >= 3
+    results = monte_carlo(scenario, None, runs=3, seed=1)
+    assert results.names == scenario.trackers
+    assert np.isfinite(results.rmse()).all()
+
+
+def test_every_kind_of_target_is_shipped():
+    assert {
+        *("constant-velocity", "constant-acceleration", "turn", "turn-angular-acceleration"),
+        *("waypoints", "kim-lee", "warship", "s3-white", "s3-coloured"),
+        *("llinas-m1", "llinas-m2", "llinas-m3", "llinas-m4"),
+        *("report", "mixed", "strong"),
+    } <= set(shipped_scenarios())
+
+
+@pytest.mark.parametrize("maneuver", ["M1", "M2", "M3", "M4"])
+def test_llinas_maneuvers_are_seen_by_the_canonical_field(maneuver):
+    scenario = load_scenario(f"llinas-{maneuver.lower()}")
+    t, truth = llinas_maneuver(maneuver)
+    np.testing.assert_array_equal(scenario.time, t)
+    np.testing.assert_array_equal(scenario.position, truth)
+    assert scenario.prepare_start
+    assert scenario.first_scored == 2
+    expected = canonical_field().measure(truth, streams(3, 5), linear=True)
+    plots = scenario.sensors.measure(truth, streams(3, 5))
+    np.testing.assert_allclose(plots.z, expected.z, rtol=1e-12)
+    np.testing.assert_allclose(plots.sigma, expected.sigma, rtol=1e-12)
+
+
+# -------------------------------------------------------------------- targets
+
+MOTION = "speed: 6, heading: 30, start: [100, -20], steps: 7, period: 30"
+SAME = {
+    "speed": 6.0,
+    "heading": math.radians(30),
+    "start": (100.0, -20.0),
+    "steps": 7,
+    "period": 30.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (f"{{motion: constant-velocity, {MOTION}}}", constant_velocity(**SAME)),
+        (
+            f"{{motion: constant-acceleration, acceleration: 0.004, {MOTION}}}",
+            constant_acceleration(acceleration=0.004, **SAME),
+        ),
+        (f"{{motion: turn, radius: -4500, {MOTION}}}", turn(radius=-4500.0, **SAME)),
+        (
+            "{motion: turn-with-angular-acceleration, acceleration: 0.004, radius: 4500, "
+            f"{MOTION}}}",
+            turn_with_angular_acceleration(acceleration=0.004, radius=4500.0, **SAME),
+        ),
+        ("{motion: turn, speed: 6, radius: 900}", turn(speed=6.0, radius=900.0)),
+        (
+            "{waypoints: [[0, 0], [9, 1], [20, 8]], leg: 100, period: 30}",
+            waypoints([[0, 0], [9, 1], [20, 8]], leg=100.0, period=30.0),
+        ),
+        (
+            "{waypoints: [[0], [9], [20]], times: [5, 80, 300]}",
+            waypoints([[0], [9], [20]], times=[5.0, 80.0, 300.0]),
+        ),
+        ("{maneuver: M3}", llinas_maneuver("M3")),
+        ("{maneuver: kim-lee}", kim_lee()),
+        ("{maneuver: s3}", s3()),
+        ("{maneuver: warship}", warship()),
+        ("{maneuver: warship, rate: 0.02}", warship(0.02)),
+    ],
+)
+def test_targets(text, expected):
+    scenario = with_target(text)
+    np.testing.assert_array_equal(scenario.time, expected[0])
+    np.testing.assert_array_equal(scenario.position, expected[1])
+    assert scenario.first_scored == 2
+
+
+@pytest.mark.parametrize(("name", "first"), [("report", 2), ("mixed", 8)])
+def test_sets_of_targets(name, first):
+    scenario = with_target(f"{{set: {name}, tracks: 5, seed: 3}}")
+    np.testing.assert_array_equal(scenario.position, track_set(name, 5, 3).position)
+    assert scenario.first_scored == first
+
+
+def test_recorded_target_beside_the_scenario(tmp_path, monkeypatch):
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "track.csv").write_text("when,e,n\n0,0,0\n1,5,2\n3,9,4\n")
+    file = tmp_path / "there" / "mine.yaml"
+    file.write_text(f"{HEAD}target: {{file: track.csv, time: when, axes: [e, n]}}\n{SENSORS}")
+    monkeypatch.chdir(tmp_path)
+    scenario = load_scenario("there/mine.yaml")
+    assert scenario.time.tolist() == [0, 1, 3]
+    assert scenario.position.tolist() == [[0, 0], [5, 2], [9, 4]]
+    (tmp_path / "there" / "track.csv").write_text("when,e,n\n0,0,0\n1,,2\n3,9,4\n")
+    with pytest.raises(ScenarioError, match=r"there/mine.yaml:3:9: position must be finite"):
+        load_scenario("there/mine.yaml")
+    (tmp_path / "there" / "track.csv").unlink()
+    with pytest.raises(
+        ScenarioError, match=r"mine.yaml:3:16: cannot read there/track.csv: No such"
+    ):
+        load_scenario("there/mine.yaml")
+
+
+# -------------------------------------------------------------------- sensors
+
+
+def test_noise():
+    text = "{sigma: [15, 23], correlation: 0.7, freedom: 5, detection: 0.9, clean: 2}"
+    assert with_sensors(text) == PlotNoise((15.0, 23.0), Noise(0.7, 5.0), 0.9, 2)
+    assert with_sensors("{sigma: 115}") == PlotNoise(115.0)
+    truth = llinas_maneuver("M1")[1]
+    plots = with_sensors("{sigma: 115}").measure(truth, streams(1, 4))
+    np.testing.assert_array_equal(plots.z, noisy_plots(truth, 115.0, streams(1, 4)).z)
+
+
+def test_grid_of_sensors():
+    text = (
+        "{grid: 3, spacing: medium, centre: [-3000, 0], reach: 4000, range_sigma: 20, "
+        "bearing_sigma: 2, detection: 0.8, correlation: 0.1, linear: yes, sigma_from: plot}"
+    )
+    sensors = with_sensors(text)
+    assert sensors.field.position[0].tolist() == [-8000, -5000]
+    assert len(sensors.field.position) == 9
+    assert sensors.field.bearing_sigma[0] == pytest.approx(math.radians(2))
+    assert (sensors.field.detection, sensors.noise.correlation) == (0.8, 0.1)
+    assert (sensors.linear, sensors.sigma_from) == (True, "plot")
+
+
+def test_scattered_sensors():
+    sensors = with_sensors(
+        "{positions: [[0, 0], [-3000, -900]], reach: [1000, 1500], range_sigma: 20, "
+        "bearing_sigma: [1, 2], linear: no}"
+    )
+    assert sensors.field.reach.tolist() == [1000, 1500]
+    np.testing.assert_allclose(sensors.field.bearing_sigma, np.radians([1, 2]))
+    assert not sensors.linear
+
+
+def test_what_is_scored_and_run():
+    scenario = loads_scenario(
+        f"{HEAD}{TARGET}{SENSORS}score: {{from: 5}}\nprocess_sigma: 0.05\nstart: interpolate\n"
+        "trackers: ['fixed:alpha=0.5:beta=0.2', chan-style]\nsource: me\n"
+    )
+    assert (scenario.first_scored, scenario.process_sigma, scenario.source) == (4, 0.05, "me")
+    assert scenario.prepare_start
+    assert scenario.trackers == ("fixed:alpha=0.5:beta=0.2", "chan-style")
+
+
+def test_rule_bases_beside_the_scenario(tmp_path, monkeypatch):
+    from fuzzytrack.fuzzy.loading import rulebase_path
+
+    (tmp_path / "there").mkdir()
+    rules = tmp_path / "there" / "own.yaml"
+    rules.write_bytes(rulebase_path("chan-style").read_bytes())
+    file = tmp_path / "there" / "mine.yaml"
+    file.write_text(f"{HEAD}{TARGET}{SENSORS}trackers: ['own.yaml:start=one-point']\n")
+    monkeypatch.chdir(tmp_path)
+    scenario = load_scenario(file)
+    results = monte_carlo(scenario, None, runs=2, seed=0)
+    assert results.names == (f"{rules}:start=one-point",)
+    rules.write_text("rulebase: 2\n")
+    with pytest.raises(ScenarioError, match=r"mine.yaml:5:12: .*own.yaml:1:11: unknown format"):
+        load_scenario(file)
+
+
+# -------------------------------------------------------------------- complaints
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", "s.yaml:1:1: the text is empty"),
+        ("# nothing\n", "s.yaml:1:1: the text is empty"),
+        ("a: b: c", "s.yaml:1:5: not YAML"),
+        ("- 1\n", "s.yaml:1:1: the scenario must be a mapping"),
+        ("name: x\n", "s.yaml:1:1: the scenario lacks its format version, 'scenario: 1'"),
+        ("scenario: 2\n", "s.yaml:1:11: unknown format version '2'"),
+        (
+            f"{HEAD}{TARGET}sensor: {{sigma: 1}}\n",
+            "s.yaml:4:1: unknown key in the scenario: 'sensor'; did you mean 'sensors'? allowed: "
+            "scenario, name, target, sensors, source, start, score, process_sigma, trackers",
+        ),
+        (HEAD + SENSORS, "s.yaml:1:1: the scenario lacks the key 'target'"),
+        (HEAD + TARGET, "s.yaml:1:1: the scenario lacks the key 'sensors'"),
+        (HEAD + TARGET + TARGET + SENSORS, "s.yaml:4:1: doubled key 'target'"),
+        (
+            f"{HEAD}{TARGET}{SENSORS}start: early\n",
+            "s.yaml:5:8: unknown start 'early'; allowed: as-seen, interpolate",
+        ),
+        (
+            f"{HEAD}{TARGET}{SENSORS}score: {{from: 21}}\n",
+            "s.yaml:5:15: from must be a whole number from 1 to 20, got 21",
+        ),
+        (
+            f"{HEAD}{TARGET}{SENSORS}process_sigma: -1\n",
+            "s.yaml:5:16: process_sigma must be finite and >= 0, got -1",
+        ),
+        (
+            f"{HEAD}{TARGET}{SENSORS}trackers: [chan-style, chan-stile]\n",
+            "s.yaml:5:24: tracker 'chan-stile': no such tracker; did you mean 'chan-style'?",
+        ),
+        (
+            f"{HEAD}{TARGET}{SENSORS}trackers: ['fixed:alpha=0.5']\n",
+            "s.yaml:5:12: tracker 'fixed:alpha=0.5': needs beta",
+        ),
+        (
+            f"{HEAD}{TARGET}{SENSORS}trackers: [chan-style, chan-style]\n",
+            "s.yaml:5:24: tracker 'chan-style' is given twice",
+        ),
+        (f"{HEAD}{TARGET}{SENSORS}trackers: []\n", "s.yaml:5:11: trackers must be a list"),
+    ],
+)
+def test_complaints(text, expected):
+    assert complaint(text).startswith(expected)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "expected"),
+    [
+        ("{}", 9, "target must be a mapping"),
+        ("M1", 9, "target must be a mapping, 'word: value', not 'M1'"),
+        (
+            "{manoeuvre: M1}",
+            10,
+            "unknown key in target: 'manoeuvre'; did you mean 'maneuver'? allowed: motion, "
+            "waypoints, maneuver, set, file",
+        ),
+        ("{speed: 5}", 9, "target needs one of motion, waypoints, maneuver, set, file"),
+        ("{maneuver: M1, set: mixed}", 24, "target has 'maneuver' already; it takes one of"),
+        (
+            "{maneuver: kimlee}",
+            20,
+            "unknown maneuver 'kimlee'; did you mean 'kim-lee'? allowed: M1, M2, M3, M4, kim-lee, "
+            "s3, warship",
+        ),
+        ("{maneuver: s3, rate: 1}", 24, "unknown key in a target in maneuver s3: 'rate'"),
+        ("{maneuver: warship, rate: 0}", 35, "rate must be finite and > 0, got 0"),
+        ("{motion: straight, speed: 5}", 18, "unknown motion 'straight'; allowed: constant-vel"),
+        (
+            "{motion: turn, speed: 5, radios: 9}",
+            34,
+            "unknown key in a target in turn: 'radios'; did you mean 'radius'?",
+        ),
+        ("{motion: turn, speed: 5}", 9, "a target in turn lacks the key 'radius'"),
+        ("{motion: turn, speed: fast, radius: 5}", 31, "speed must be a finite number, not 'fast'"),
+        ("{motion: turn, speed: 5, radius: 0}", 42, "radius must be finite and not 0, got 0"),
+        (
+            "{motion: constant-velocity, speed: 5, steps: 1}",
+            54,
+            "steps must be a whole number from 3 to 100000, got 1",
+        ),
+        (
+            "{motion: constant-velocity, speed: 5, steps: 1e30}",
+            54,
+            "steps must be a whole number from 3 to 100000, got 1",
+        ),
+        (
+            "{motion: constant-velocity, speed: 5, period: 0}",
+            55,
+            "period must be finite and > 0, got 0",
+        ),
+        ("{motion: constant-velocity, speed: 5, start: [1]}", 54, "start must be two coordinates"),
+        ("{motion: constant-velocity, speed: 1e308}", 9, "position must be finite"),
+        (
+            "{waypoints: [[5, 5], [5, 5]]}",
+            21,
+            "points must not all lie on one spot; all 2 lie on [5.0, 5.0]",
+        ),
+        ("{waypoints: [[5, 5]]}", 21, "points must have shape (n_points, n_axes), two way-points"),
+        (
+            "{waypoints: [[5, 5], [6]]}",
+            30,
+            "has 1 coordinates, the first of the waypoints 2",
+        ),
+        ("{waypoints: [5, 6]}", 22, "each of the waypoints must be a list, not '5'"),
+        ("{waypoints: [[0], [9]], period: 1e-9}", 9, "more than 100000 scans"),
+        ("{waypoints: [[0], [9]]}", 9, "the target has 2 scans; at least 3"),
+        ("{waypoints: [[0], [9]], leg: 9, times: [0, 1]}", 38, "leg says what times say already"),
+        ("{waypoints: [[0], [9]], times: [0, -1]}", 40, "times must be 2 increasing numbers"),
+        ("{set: mixed}", 9, "a set of targets lacks the key 'tracks'"),
+        ("{set: mild, tracks: 5}", 15, "unknown set 'mild'; did you mean 'mixed'?"),
+        (
+            "{set: mixed, tracks: 0}",
+            30,
+            "tracks must be a whole number from 1 to 10000, got 0",
+        ),
+        ("{set: mixed, tracks: 5, seed: -1}", 39, "seed must be a whole number from 0"),
+    ],
+)
+def test_complaints_of_targets(text, place, expected):
+    found = complaint(f"{HEAD}target: {text}\n{SENSORS}")
+    assert found.startswith(f"s.yaml:3:{place}: {expected}"), found
+
+
+FIELD = "reach: 1000, range_sigma: 10, bearing_sigma: 1"
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "expected"),
+    [
+        ("{sigma: -5}", 18, "sigma must be finite and > 0, got -5"),
+        ("{sigma: [1, 0]}", 18, "sigma must be finite and > 0, got 0 at index 1"),
+        ("{sigma: [1, 2, 3]}", 18, "sigma has 3 numbers, the target 2 axes"),
+        ("{sigma: many}", 18, "sigma must be a finite number, not 'many'"),
+        (
+            "{sigma: 5, corelation: 0.5}",
+            21,
+            "unknown key in sensors: 'corelation'; did you mean 'correlation'? allowed: sigma, "
+            "detection, clean, correlation, freedom",
+        ),
+        (
+            "{variance: 5}",
+            11,
+            "unknown key in sensors: 'variance'; allowed: sigma, grid, positions",
+        ),
+        ("{reach: 5}", 10, "sensors needs one of sigma, grid, positions"),
+        ("{sigma: 5, grid: 7}", 21, "sensors has 'sigma' already; it takes one of"),
+        ("{sigma: 5, correlation: 1}", 34, "correlation must be between -1 and 1, got 1"),
+        ("{sigma: 5, freedom: 2}", 30, "freedom must be > 2, got 2"),
+        ("{sigma: 5, detection: 0}", 32, "detection must be > 0 and <= 1, got 0"),
+        ("{sigma: 5, clean: -1}", 28, "clean must be a whole number from 0"),
+        (
+            f"{{grid: 0, spacing: 5, {FIELD}}}",
+            17,
+            "grid must be a whole number from 1 to 100, got 0",
+        ),
+        (
+            f"{{grid: 7, spacing: sparce, {FIELD}}}",
+            29,
+            "unknown spacing 'sparce'; did you mean 'sparse'? allowed: dense, medium, sparse",
+        ),
+        (f"{{grid: 7, spacing: -2, {FIELD}}}", 29, "spacing must be finite and > 0, got -2"),
+        (f"{{grid: 7, {FIELD}}}", 10, "a grid of sensors lacks the key 'spacing'"),
+        (
+            f"{{grid: 7, spacing: 2000, centre: [90000, 0], {FIELD}}}",
+            10,
+            "no sensor ever has the target within its reach",
+        ),
+        (
+            f"{{grid: 7, spacing: 2000, linear: perhaps, {FIELD}}}",
+            43,
+            "unknown linear 'perhaps'; allowed: yes, true, no, false",
+        ),
+        (
+            f"{{grid: 7, spacing: 2000, sigma_from: plots, {FIELD}}}",
+            47,
+            "unknown sigma_from 'plots'; did you mean 'plot'? allowed: truth, plot",
+        ),
+        (f"{{grid: 7, spacing: 2000, detection: 0, {FIELD}}}", 46, "detection must be > 0"),
+        (
+            "{grid: 7, spacing: 2000, reach: 1000, range_sigma: 10, bearing_sigma: -1}",
+            80,
+            "bearing_sigma must be > 0, got -1",
+        ),
+        (f"{{positions: [], {FIELD}}}", 22, "positions must be a list, not a list without"),
+        (f"{{positions: [[0, 0, 0]], {FIELD}}}", 22, "position must have shape (n_sensors, 2)"),
+        (
+            "{positions: [[0, 0]], reach: [1, 2], range_sigma: 10, bearing_sigma: 1}",
+            39,
+            "reach must be a number or 1, one a sensor",
+        ),
+    ],
+)
+def test_complaints_of_sensors(text, place, expected):
+    found = complaint(f"{HEAD}{TARGET}sensors: {text}\n")
+    assert found.startswith(f"s.yaml:4:{place}: {expected}"), found
+
+
+def test_a_field_needs_two_axes_and_is_bounded():
+    text = f"{HEAD}target: {{maneuver: kim-lee}}\nsensors: {{grid: 3, spacing: 9, {FIELD}}}\n"
+    assert "is for targets with two axes, this one has 1" in complaint(text)
+    text = (
+        f"{HEAD}target: {{set: mixed, tracks: 20}}\nsensors: {{grid: 100, spacing: 9, {FIELD}}}\n"
+    )
+    assert "10000 sensors and 1200 positions of targets are too many" in complaint(text)
+
+
+def test_names_and_paths(tmp_path):
+    assert scenario_path("mixed").stem == "mixed"
+    (tmp_path / "own.yaml").write_text(HEAD)
+    assert scenario_source(tmp_path / "own.yaml") == ""
+    with pytest.raises(ScenarioError, match=r"unknown scenario 'mixt'; did you mean 'mixed'\?"):
+        load_scenario("mixt")
+    with pytest.raises(ScenarioError, match=r"cannot read scenario .*: No such file"):
+        load_scenario(tmp_path / "none.yaml")
+    (tmp_path / "big.yaml").write_bytes(b"#" * 200_000)
+    with pytest.raises(ScenarioError, match="longer than 128 KiB"):
+        load_scenario(tmp_path / "big.yaml")
+
+
+def test_damaged_texts_load_or_are_complained_of():
+    rng = random.Random(1)
+    whole = [scenario_path(name).read_text() for name in ("llinas-m1", "waypoints", "s3-coloured")]
+    # Making trackers takes the longest, and is tested elsewhere.
+    texts = [text.partition("trackers:")[0] for text in whole]
+    outcomes = set()
+    for _ in range(300):
+        text = rng.choice(texts)
+        at, length = rng.randrange(len(text)), rng.choice([0, 1, 2, 8])
+        damaged = (
+            text[:at] + rng.choice(["", "-", "0", ": ", "[", "e9", "\t"]) + text[at + length :]
+        )
+        try:
+            loads_scenario(damaged)
+            outcomes.add("loads")
+        except ScenarioError as error:
+            outcomes.add(error.location.file)
+    assert outcomes == {"loads", "<text>"}
