@@ -11,8 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker
@@ -22,7 +22,6 @@ from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["check_scheduler", "check_tracker"]
 
-Array = NDArray[np.float64]
 
 _STEPS, _TRACKS, _AXES = 24, 5, 2
 _SIGMA = 10.0

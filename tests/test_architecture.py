@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "fuzzytrack"
 
 # From the bottom up; what shares a row does not know each other. See docs/architecture.md.
 LAYERS = [
-    {"errors"},
+    {"arrays", "errors", "tasks"},
     {"plugins", "yamltree"},
     {"shipped"},
     {"gains", "kernels"},

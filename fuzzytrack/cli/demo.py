@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.compare import (
     DEFAULT_TRACKERS,
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["demo"]
 
-Array = NDArray[np.float64]
 
 SIGMA = 50.0
 RULES = "stiffness-damping"

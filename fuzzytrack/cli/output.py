@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import typer
 
+from fuzzytrack.tasks import Progress
+
 if TYPE_CHECKING:
     from rich.table import Table
 
 __all__ = ["plain", "print_json", "print_table", "progress", "say", "show", "with_error"]
-
-Progress = Callable[[float], None]
 
 
 def say(text: str = "") -> None:

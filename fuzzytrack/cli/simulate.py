@@ -7,8 +7,8 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import progress, say
 from fuzzytrack.io.files import check_output
@@ -18,8 +18,6 @@ from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_path
 
 __all__ = ["simulate"]
-
-Array = NDArray[np.float64]
 
 
 def simulate(

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
@@ -17,7 +17,6 @@ from fuzzytrack.schedulers.review import gains_of
 
 __all__ = ["grid_table", "surface"]
 
-Array = NDArray[np.float64]
 
 MAX_POINTS = 1001
 

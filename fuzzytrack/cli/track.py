@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["read", "track"]
 
-Array = NDArray[np.float64]
 
 # Bytes of a file above which it is tracked in pieces although nobody asks for it.
 _LARGE = 100_000_000

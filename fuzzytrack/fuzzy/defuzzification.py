@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
+
 __all__ = ["DEFUZZIFIERS", "defuzzify"]
 
-Array = NDArray[np.float64]
 
 # Equal grades may differ by the rounding of the operations that led to them.
 _ROUNDING = 1e-12

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import Operators, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 
 __all__ = ["Conclusions", "conclusions", "conjoin", "disjoin", "output_grid", "strengths"]
-
-Array = NDArray[np.float64]
 
 
 def conjoin(operators: Operators, a: Array, b: Array | float) -> Array:

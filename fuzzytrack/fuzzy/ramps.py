@@ -12,15 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import Conclusions, conclusions
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 
 __all__ = ["Ramps", "find_ramps"]
 
-Array = NDArray[np.float64]
 
 # Weights so small beside the cells are rounding.
 _ROUNDING = 1e-13

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import conjoin, disjoin, output_grid
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 
 __all__ = ["MAX_ELEMENTS", "compose", "relation"]
 
-Array = NDArray[np.float64]
 
 MAX_ELEMENTS = 100_000_000
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import NoRuleFiresWarning
 from fuzzytrack.fuzzy.defuzzification import defuzzify
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
@@ -21,7 +22,6 @@ from fuzzytrack.fuzzy.table import InterpolationTable, build_table, default_node
 
 __all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
 
-Array = NDArray[np.float64]
 
 METHODS = ("exact", "relation", "table")
 # Points at a time: the arrays of one chunk stay in the processor cache.

@@ -6,13 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
 
 __all__ = ["InterpolationTable", "build_table", "default_nodes"]
 
-Array = NDArray[np.float64]
 
 MAX_NODES = 4_000_000
 # With three, a kink is met at 3/4 of its height or more on each axis: twice the largest difference

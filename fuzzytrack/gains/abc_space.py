@@ -9,15 +9,15 @@ filter its face c = -1 (Llinas et al. 1998, Eqs. 2.53 and 2.54).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.gains.stability import discriminant, factored, pair_distances
 
 __all__ = ["abc_preimages", "from_abc", "to_abc"]
 
-Floats = NDArray[np.float64]
-Triple = tuple[Floats, Floats, Floats]
+Triple = tuple[Array, Array, Array]
 
 
 def from_abc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Triple:
@@ -126,7 +126,7 @@ def abc_preimages(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> Triple
     low, high, _ = pair_distances(a, b)
     real = discriminant(a, b) >= 0
 
-    def other(third: Floats, left: Floats) -> Triple:
+    def other(third: Array, left: Array) -> Triple:
         """With `third` as third pole, and `left` and the one that was third as the pair."""
         product = left * delta
         first = left + delta - product
@@ -137,7 +137,7 @@ def abc_preimages(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> Triple
     return a, b, delta - 1
 
 
-def gains_from_distance(a: Floats, b: Floats, delta: Floats) -> Triple:
+def gains_from_distance(a: Array, b: Array, delta: Array) -> Triple:
     """Eq. 2.54 without checks, with δ = 1 + c, which for slow filters has more digits than c."""
     a, b, delta = np.broadcast_arrays(a, b, delta)
     alpha = np.asarray(a + delta * (1 - a))

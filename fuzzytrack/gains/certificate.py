@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
+
 __all__ = [
     "Certificate",
     "box",
@@ -25,7 +27,6 @@ __all__ = [
     "polygon_in_gains",
 ]
 
-Array = NDArray[np.float64]
 
 #: A rate this close to 1 is not told from 1 in floating point.
 _MARGIN = 1e-9

@@ -5,35 +5,35 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
+
 __all__ = ["finite", "inside", "nonnegative", "number", "positive", "stable_gains", "within"]
 
-Floats = NDArray[np.float64]
 
-
-def finite(name: str, value: ArrayLike) -> Floats:
+def finite(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite, or a ValueError that names it."""
     array = np.asarray(value, dtype=np.float64)
     return _all(name, array, np.isfinite(array), "finite")
 
 
-def nonnegative(name: str, value: ArrayLike) -> Floats:
+def nonnegative(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite and >= 0, or a ValueError that names it."""
     array = np.asarray(value, dtype=np.float64)
     return _all(name, array, np.isfinite(array) & (array >= 0), "finite and >= 0")
 
 
-def positive(name: str, value: ArrayLike) -> Floats:
+def positive(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite and > 0, or a ValueError that names it."""
     array = np.asarray(value, dtype=np.float64)
     return _all(name, array, np.isfinite(array) & (array > 0), "finite and > 0")
 
 
-def within(name: str, value: ArrayLike, good: NDArray[np.bool_], range_: str) -> Floats:
+def within(name: str, value: ArrayLike, good: NDArray[np.bool_], range_: str) -> Array:
     """`value` as an array of floats where `good` holds, or a ValueError that names it."""
     return _all(name, np.asarray(value, dtype=np.float64), good, range_)
 
 
-def inside(alpha: Floats, beta: Floats, gamma: Floats) -> NDArray[np.bool_]:
+def inside(alpha: Array, beta: Array, gamma: Array) -> NDArray[np.bool_]:
     """Whether gains lie in the open stability region; false for NaN and infinity."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         triangle = (alpha > 0) & (alpha < 2) & (beta > 0) & (4 - 2 * alpha - beta > 0)
@@ -45,7 +45,7 @@ def inside(alpha: Floats, beta: Floats, gamma: Floats) -> NDArray[np.bool_]:
 
 def stable_gains(
     alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0
-) -> tuple[Floats, Floats, Floats]:
+) -> tuple[Array, Array, Array]:
     """Gains of one common shape (views, not to be written to), all of them stable.
 
     Raises
@@ -73,7 +73,7 @@ def stable_gains(
     return a, b, c
 
 
-def _all(name: str, array: Floats, good: NDArray[np.bool_], range_: str) -> Floats:
+def _all(name: str, array: Array, good: NDArray[np.bool_], range_: str) -> Array:
     if not good.all():
         at = tuple(np.argwhere(~good)[0])
         where = f" at index {_index(at)}" if at else ""
@@ -85,7 +85,7 @@ def _index(at: tuple[np.intp, ...]) -> str:
     return str(tuple(map(int, at)) if len(at) > 1 else int(at[0]))
 
 
-def number(name: str, array: Floats) -> float:
+def number(name: str, array: Array) -> float:
     """One number out of an array of no axes, or a ValueError that names it."""
     if array.ndim:
         raise ValueError(f"{name} must be one number, got an array of shape {array.shape}")

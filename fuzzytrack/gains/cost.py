@@ -7,8 +7,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive, stable_gains
 from fuzzytrack.gains.performance import (
     squared_distance,
@@ -18,7 +19,6 @@ from fuzzytrack.gains.performance import (
 
 __all__ = ["Optimum", "TrackingCost"]
 
-Array = NDArray[np.float64]
 
 Cost = Callable[..., Any]
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive, within
 from fuzzytrack.gains.stability import critical_curves
 
@@ -24,12 +25,11 @@ __all__ = [
     "tracking_index",
 ]
 
-Floats = NDArray[np.float64]
-Pair = tuple[Floats, Floats]
-Triple = tuple[Floats, Floats, Floats]
+Pair = tuple[Array, Array]
+Triple = tuple[Array, Array, Array]
 
 
-def tracking_index(sigma_v: ArrayLike, sigma_w: ArrayLike, dt: ArrayLike) -> Floats:
+def tracking_index(sigma_v: ArrayLike, sigma_w: ArrayLike, dt: ArrayLike) -> Array:
     """Kalata's tracking index λ = σ_v T²/σ_w: how far a manoeuvre carries, against the noise.
 
     Parameters
@@ -114,11 +114,11 @@ def kalata(tracking_index: ArrayLike, order: int = 2) -> Pair | Triple:
     return *_kalata_pair(q), (4 * q**3 / (2 - q))[()]
 
 
-def _kalata_pair(q: Floats) -> Pair:
+def _kalata_pair(q: Array) -> Pair:
     return (q * (2 - q))[()], (2 * q**2)[()]
 
 
-def _kalata_q(index: Floats) -> Floats:
+def _kalata_q(index: Array) -> Array:
     """The q in [0, 1) of λ = 2q³/((2 - q)(1 - q)).
 
     In t = log(q/(1 - q)) the logarithm of the right side is concave, with slopes from 3 down to 1,
@@ -140,7 +140,7 @@ _NEWTON_STEPS = 8
 """The start is off by less than 1 in t, and each step squares the error: 5 would do."""
 
 
-def benedict_bordner(alpha: ArrayLike) -> Floats:
+def benedict_bordner(alpha: ArrayLike) -> Array:
     """β = α²/(2 - α): the least transient error for a given noise ratio, at constant velocity.
 
     Parameters
@@ -172,7 +172,7 @@ def benedict_bordner(alpha: ArrayLike) -> Floats:
     return (a**2 / (2 - a))[()]
 
 
-def critically_damped(alpha: ArrayLike, branch: Literal["lower", "upper"] = "lower") -> Floats:
+def critically_damped(alpha: ArrayLike, branch: Literal["lower", "upper"] = "lower") -> Array:
     """β for which the two poles of an α-β filter coincide.
 
     Parameters

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive
 
 __all__ = [
@@ -24,8 +25,6 @@ __all__ = [
     "steady_index",
     "velocity_index",
 ]
-
-Array = NDArray[np.float64]
 
 
 # ---------------------------------------------------------------- indices

@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive, stable_gains
 
 __all__ = [
@@ -28,7 +29,6 @@ __all__ = [
     "transient_cost",
 ]
 
-Array = NDArray[np.float64]
 
 NoisyOutput = Literal["predicted", "filtered", "velocity", "acceleration", "interval"]
 

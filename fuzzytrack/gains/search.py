@@ -6,14 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import inside, stable_gains
 from fuzzytrack.gains.cost import Optimum, TrackingCost
 
 __all__ = ["Region", "Search", "optimal_gains"]
 
-Array = NDArray[np.float64]
 
 Cost = Callable[..., Any]
 

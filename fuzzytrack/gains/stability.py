@@ -12,12 +12,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import finite, inside
 
 __all__ = ["Region", "eigenfrequency", "is_stable", "jury", "poles", "region"]
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 class Region(StrEnum):
@@ -37,7 +35,7 @@ class Region(StrEnum):
     """On or outside the edge of the stability triangle."""
 
 
-def jury(coefficients: ArrayLike) -> Bools:
+def jury(coefficients: ArrayLike) -> Mask:
     """Jury's test: whether all roots of polynomials lie inside the unit circle.
 
     Parameters
@@ -79,7 +77,7 @@ def jury(coefficients: ArrayLike) -> Bools:
         raise ValueError("coefficients must begin with a value other than 0, the highest power's")
     row = _scaled(polynomial * np.sign(polynomial[..., :1]))
     signs = (-1.0) ** np.arange(row.shape[-1])  # (-1)^n P(-1): both cases of Eq. 2.14
-    stable: Bools = np.abs(row[..., -1]) < row[..., 0]
+    stable: Mask = np.abs(row[..., -1]) < row[..., 0]
     stable &= row.sum(axis=-1) > 0
     stable &= (row * signs).sum(axis=-1) > 0
     while row.shape[-1] > 3:
@@ -89,7 +87,7 @@ def jury(coefficients: ArrayLike) -> Bools:
     return stable[()]
 
 
-def is_stable(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0) -> Bools:
+def is_stable(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0) -> Mask:
     """Whether an α-β or α-β-γ filter is stable: all its poles inside the unit circle.
 
     Parameters
@@ -213,7 +211,7 @@ def region(alpha: ArrayLike, beta: ArrayLike) -> NDArray[np.str_]:
     return names[()]
 
 
-def eigenfrequency(alpha: ArrayLike, beta: ArrayLike) -> Floats:
+def eigenfrequency(alpha: ArrayLike, beta: ArrayLike) -> Array:
     """Frequency at which an α-β filter rings.
 
     Parameters
@@ -245,30 +243,30 @@ def eigenfrequency(alpha: ArrayLike, beta: ArrayLike) -> Floats:
     """
     a, b = np.broadcast_arrays(finite("alpha", alpha), finite("beta", beta))
     width = np.sqrt(np.maximum(-discriminant(a, b), 0))
-    angle: Floats = np.arctan2(width, 2 - a - b)
+    angle: Array = np.arctan2(width, 2 - a - b)
     return angle[()]
 
 
 # ---------------------------------------------------------------- arithmetic, without checks
 
 
-def critical_curves(alpha: Floats) -> tuple[Floats, Floats]:
+def critical_curves(alpha: Array) -> tuple[Array, Array]:
     """β of the two critically damped curves, (1 ∓ √(1 - α))², for α <= 1 (Eq. 2.27)."""
     s = np.sqrt(1 - alpha)
     # 1 - s = α/(1 + s) keeps its digits for small α.
     return (alpha / (1 + s)) ** 2, (1 + s) ** 2
 
 
-def discriminant(a: Floats, b: Floats) -> Floats:
+def discriminant(a: Array, b: Array) -> Array:
     """(a + b)² - 4b: negative where the poles are complex, 0 on the critical curves exactly."""
     lower, upper = critical_curves(np.minimum(a, 1))
-    value: Floats = np.where(
+    value: Array = np.where(
         a <= 1, (b - lower) * (b - upper), (2 - a - b) ** 2 + 4 * (np.maximum(a, 1) - 1)
     )
     return value
 
 
-def pair_distances(a: Floats, b: Floats) -> tuple[Floats, Floats, Floats]:
+def pair_distances(a: Array, b: Array) -> tuple[Array, Array, Array]:
     """Real parts δ_low <= δ_high of 1 - z of the two poles, and twice their imaginary part."""
     total, square = a + b, discriminant(a, b)
     root = np.sqrt(np.abs(square))
@@ -282,7 +280,7 @@ def pair_distances(a: Floats, b: Floats) -> tuple[Floats, Floats, Floats]:
     )
 
 
-def factored(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> tuple[Floats, Floats, Floats]:
+def factored(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> tuple[Array, Array, Array]:
     """Gains a, b of the pair of poles and the distance δ of the largest real pole, 1 - δ.
 
     The characteristic polynomial of gains, in δ, is δ³ - s₂δ² + s₁δ - s₀ = (δ - δ₁)(δ² - (a + b)δ +
@@ -299,7 +297,7 @@ def factored(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> tuple[Float
     return a, b, delta
 
 
-def _smallest_real_root(s2: Floats, s1: Floats, s0: Floats) -> Floats:
+def _smallest_real_root(s2: Array, s1: Array, s0: Array) -> Array:
     """Smallest real root of p(x) = x³ - s₂x² + s₁x - s₀, accurate to the residual's rounding.
 
     Left of its inflection p is concave and right of it convex, so Newton's method from beyond the
@@ -335,12 +333,12 @@ def _smallest_real_root(s2: Floats, s1: Floats, s0: Floats) -> Floats:
 _MOST_STEPS = 200
 
 
-def _cubic(x: Floats, s2: Floats, s1: Floats, s0: Floats) -> tuple[Floats, Floats]:
+def _cubic(x: Array, s2: Array, s1: Array, s0: Array) -> tuple[Array, Array]:
     """p(x) = x³ - s₂x² + s₁x - s₀ and its derivative."""
     return ((x - s2) * x + s1) * x - s0, (3 * x - 2 * s2) * x + s1
 
 
-def _scaled(row: Floats) -> Floats:
+def _scaled(row: Array) -> Array:
     largest = np.abs(row).max(axis=-1, keepdims=True)
-    scaled: Floats = row / np.where(largest > 0, largest, 1)
+    scaled: Array = row / np.where(largest > 0, largest, 1)
     return scaled

@@ -12,6 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.abc_space import gains_from_distance
 from fuzzytrack.gains.checks import nonnegative, positive, stable_gains
 from fuzzytrack.gains.stability import factored
@@ -27,7 +28,6 @@ __all__ = [
 ]
 
 Number = TypeVar("Number", float, NDArray[np.float64])
-Floats = NDArray[np.float64]
 
 
 def bilinear(omega0: Number, zeta: Number) -> tuple[Number, Number]:
@@ -40,7 +40,7 @@ def bilinear(omega0: Number, zeta: Number) -> tuple[Number, Number]:
 
 def alpha_beta_from_w(
     omega0: ArrayLike, zeta: ArrayLike, dt: ArrayLike | None = None
-) -> tuple[Floats, Floats]:
+) -> tuple[Array, Array]:
     """Gains from natural frequency and damping ratio in the w-domain.
 
     Parameters
@@ -85,7 +85,7 @@ def alpha_beta_from_w(
     return alpha[()], beta[()]
 
 
-def kalata_damping(omega0: ArrayLike) -> Floats:
+def kalata_damping(omega0: ArrayLike) -> Array:
     """Damping on the curve of the optimal gains, for an eigenfrequency of the w-domain.
 
     Parameters
@@ -116,7 +116,7 @@ def kalata_damping(omega0: ArrayLike) -> Floats:
 
 def w_from_alpha_beta(
     alpha: ArrayLike, beta: ArrayLike, dt: ArrayLike | None = None
-) -> tuple[Floats, Floats]:
+) -> tuple[Array, Array]:
     """Natural frequency and damping ratio in the w-domain from stable gains.
 
     Parameters
@@ -154,7 +154,7 @@ def w_from_alpha_beta(
 
 def alpha_beta_gamma_from_w(
     omega0: ArrayLike, zeta: ArrayLike, omega3: ArrayLike, dt: ArrayLike | None = None
-) -> tuple[Floats, Floats, Floats]:
+) -> tuple[Array, Array, Array]:
     """Gains of the α-β-γ filter with a pair of poles and a third pole given in the w-domain.
 
     Parameters
@@ -199,7 +199,7 @@ def alpha_beta_gamma_from_w(
 
 def w_from_alpha_beta_gamma(
     alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike, dt: ArrayLike | None = None
-) -> tuple[Floats, Floats, Floats]:
+) -> tuple[Array, Array, Array]:
     """Natural frequency, damping ratio and third pole in the w-domain from stable gains.
 
     Parameters
@@ -238,7 +238,7 @@ def w_from_alpha_beta_gamma(
     return np.asarray(omega0 / half)[()], zeta[()], np.asarray(third / half)[()]
 
 
-def alpha_beta_from_s(omega0: ArrayLike, zeta: ArrayLike, dt: ArrayLike) -> tuple[Floats, Floats]:
+def alpha_beta_from_s(omega0: ArrayLike, zeta: ArrayLike, dt: ArrayLike) -> tuple[Array, Array]:
     """Gains whose poles are those of a continuous system, sampled: z = exp(sT).
 
     Where ω₀T is not small, `alpha_beta_from_w` bends the frequency; here the filter rings at
@@ -287,11 +287,11 @@ def alpha_beta_from_s(omega0: ArrayLike, zeta: ArrayLike, dt: ArrayLike) -> tupl
     return alpha[()], beta[()]
 
 
-def _frequency_and_damping(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+def _frequency_and_damping(a: Array, b: Array) -> tuple[Array, Array]:
     u = 4 - 2 * a - b
     return np.sqrt(b / u), a / np.sqrt(b * u)
 
 
-def _half(dt: ArrayLike | None) -> Floats:
+def _half(dt: ArrayLike | None) -> Array:
     """T/2, which makes frequencies dimensionless; 1 if they are."""
     return np.asarray(1.0) if dt is None else positive("dt", dt) / 2

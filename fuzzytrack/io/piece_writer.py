@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_file
@@ -19,7 +20,6 @@ from fuzzytrack.io.tables import CHUNK, Words, cells, import_pyarrow, table_writ
 
 __all__ = ["OUTPUTS", "piece_writer"]
 
-Array = NDArray[np.float64]
 Values = Mapping[str, Words | Array]
 
 #: What must be known of a track to write it.

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
@@ -33,7 +34,6 @@ from fuzzytrack.io.tables import (
 
 __all__ = ["ROWS", "Piece", "find_columns", "read_pieces", "recording_files"]
 
-Array = NDArray[np.float64]
 
 #: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
 ROWS = 250_000

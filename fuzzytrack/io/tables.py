@@ -14,17 +14,17 @@ from typing import IO, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.files import PathLike, whole_file
+from fuzzytrack.tasks import Progress
 
 __all__ = ["Kind", "Progress", "Table", "Words", "read_table", "write_table"]
 
-Array = NDArray[np.float64]
 
 #: What a column must hold: a number in every row, numbers and gaps, or words.
 Kind = Literal["number", "gaps", "word"]
 #: Called now and then with the share of the work that is done.
-Progress = Callable[[float], None]
 
 # What stands for a missing number, in lower case.
 GAPS = ("", "nan", "na")

@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.tables import Kind, Progress, Table, Words, read_table
 
 __all__ = ["Recording", "Track", "read_tracks"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.kernels.compile import entry_point
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows, aligned
 
 __all__ = ["InfinitePlotError", "Recursion", "Runner"]
 
-Array = NDArray[np.float64]
 
 #: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
 #: sooner. Measured for a new tracker; code that is on disk would pay from a third of that.

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.papers.alwagih_abdulla_tables import (
     METHODS,
     TABLE_1,
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["NOISES", "RUNS", "reproduce", "scenario", "trackers"]
 
-Array = NDArray[np.float64]
 Draw = Callable[[], "Figure"]
 
 RUNS = 500

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.design import kalata
 from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, part, row
 from fuzzytrack.schedulers import FixedGains, InnovationScheduler
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RUNS", "reproduce", "scenario", "trackers"]
 
-Array = NDArray[np.float64]
 Draw = Callable[[], "Figure"]
 
 RUNS = 2000

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
 from fuzzytrack.schedulers import FadingMemory, GainScheduler
 from fuzzytrack.schedulers.base import Kernel, Memory
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RUNS", "StoredGains", "kalman_gains", "reproduce", "scenario"]
 
-Array = NDArray[np.float64]
 
 RUNS = 100
 XI = 0.64

@@ -8,13 +8,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from fuzzytrack.tasks import Progress
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["COST", "PAPERS", "Progress", "Reproduction", "Row", "part", "reproduce", "row"]
 
 #: Called with the share of the work that is done.
-Progress = Callable[[float], None]
 
 #: Papers by name, and the modules that rebuild their experiments.
 PAPERS = {

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import within
 from fuzzytrack.gains.design import quality
 from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["RUNS", "gate_factor", "reproduce"]
 
-Array = NDArray[np.float64]
 
 # Nothing here is random.
 RUNS = 1

@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import positive
 from fuzzytrack.plotting import _figures as shared
 from fuzzytrack.plotting.stability import LABELS
 
 __all__ = ["graded", "increasing", "label_crests", "triangle"]
-
-Array = NDArray[np.float64]
 
 
 def triangle(ax: Axes, limits: tuple[float, float] = (2.06, 4.12)) -> None:

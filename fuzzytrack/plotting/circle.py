@@ -19,7 +19,6 @@ from fuzzytrack.plotting._triangle import graded, increasing, label_crests, tria
 
 __all__ = ["plot_circle_cost", "plot_circle_gains"]
 
-Array = NDArray[np.float64]
 Order = Literal[2, 3]
 STYLES = ("-", "--", "-.", ":")
 

@@ -8,8 +8,9 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.plotting import _figures as shared
 
@@ -20,7 +21,6 @@ __all__ = [
     "plot_trajectories",
 ]
 
-Array = NDArray[np.float64]
 Unit = Literal["m", "km"]
 
 STYLES = ("-", "--", "-.", ":")

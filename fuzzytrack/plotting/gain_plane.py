@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.gains.stability import critical_curves
@@ -20,7 +20,6 @@ from fuzzytrack.trackers.state import Gains
 
 __all__ = ["plot_gain_plane"]
 
-Array = NDArray[np.float64]
 Box = tuple[tuple[float, float], tuple[float, float]]
 Visited = Gains | TrackResult
 

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains import (
     design,
     optimal_for_steady_error,
@@ -24,7 +24,6 @@ from fuzzytrack.plotting.stability import SPACES, Space, draw_edges, finish_spac
 
 __all__ = ["plot_noise_against_lag", "plot_noise_ratio", "plot_noise_surfaces"]
 
-Array = NDArray[np.float64]
 STYLES = ("-", "--", "-.", ":")
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains import (
     TrackingCost,
     acceleration_index,
@@ -27,7 +28,6 @@ from fuzzytrack.plotting.stability import LABELS
 
 __all__ = ["plot_motion_gains", "plot_optimal_curves", "plot_optimal_gains"]
 
-Array = NDArray[np.float64]
 Order = Literal[2, 3]
 STYLES = ("-", "--", "-.", ":")
 

@@ -9,15 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.abc_space import from_abc
 from fuzzytrack.gains.stability import critical_curves
 from fuzzytrack.plotting import _figures as shared
 
 __all__ = ["plot_stability_regions", "plot_stability_volume"]
 
-Array = NDArray[np.float64]
 Mesh = tuple[Array, Array, Array]
 Space = Literal["gains", "abc"]
 

@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import output_grid
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
@@ -22,7 +22,6 @@ from fuzzytrack.plotting import _figures as shared
 
 __all__ = ["plot_gain_surfaces", "plot_relation", "plot_surface"]
 
-Array = NDArray[np.float64]
 
 STYLES = ("surface", "contour")
 GAIN_LABELS = {

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.plotting import _figures as shared
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["plot_errors", "plot_track"]
 
-Array = NDArray[np.float64]
 Track = int | tuple[int, ...]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 
@@ -16,12 +15,11 @@ from fuzzytrack.recordings.partitions import check_output_folder, track_partitio
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.workers import workers
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["LargeJob"]
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
 __all__ = ["Batch", "batches", "run_tracks"]
 
-Array = NDArray[np.float64]
 
 # Tracks of one batch are at least this part of the longest: padding costs a quarter at most.
 _ALIKE = 0.8

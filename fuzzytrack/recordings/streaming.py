@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.pieces import Piece
 from fuzzytrack.lanes.layout import Rows
@@ -18,7 +19,6 @@ from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["OpenTracks", "TrackedPiece", "run_iter"]
 
-Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 
 _GAINS = ("alpha", "beta", "gamma")

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.recordings.streaming import OpenTracks, TrackedPiece
 
 __all__ = ["Totals"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.tables import Progress, write_table
@@ -14,8 +14,6 @@ from fuzzytrack.io.tracks import Recording
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["write_tracks"]
-
-Array = NDArray[np.float64]
 
 
 def write_tracks(

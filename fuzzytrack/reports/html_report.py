@@ -12,10 +12,8 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fuzzytrack import __version__
+from fuzzytrack.arrays import Array
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.reports.pictures import CAPTIONS, LEVEL, report_pictures
 from fuzzytrack.testbed.metrics import PairedDifference
@@ -26,7 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["report_pictures", "write_report"]
 
-Array = NDArray[np.float64]
 
 # Bytes beyond which a picture goes in as pixels rather than lines.
 HEAVY = 250_000

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains import certificate
@@ -19,8 +20,6 @@ from fuzzytrack.gains.wdomain import bilinear
 __all__ = ["REACHES", "certify", "reachable_gains"]
 
 REACHES = ("universe", "rules")
-
-Array = NDArray[np.float64]
 
 
 def certify(

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, kalata_damping
@@ -15,7 +15,6 @@ from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
 
 __all__ = ["Review", "gains_of", "review"]
 
-Array = NDArray[np.float64]
 
 # Points of the grid on which a rule base is looked at, over all inputs.
 _POINTS = 10_201

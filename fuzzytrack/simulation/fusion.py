@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from fuzzytrack.arrays import Array
 
 __all__ = ["fuse", "fuse_pair"]
-
-Array = NDArray[np.float64]
 
 
 def fuse_pair(

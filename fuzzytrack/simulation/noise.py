@@ -12,13 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import positive
 
 __all__ = ["WHITE", "Noise", "Plots", "noisy_plots", "streams"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

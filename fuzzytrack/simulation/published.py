@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.trajectories import (
     constant_acceleration,
     constant_velocity,
@@ -32,7 +33,6 @@ __all__ = [
     "warship",
 ]
 
-Array = NDArray[np.float64]
 
 #: Llinas' maneuvers: name to first position (m) and heading (degrees).
 _STARTS = {

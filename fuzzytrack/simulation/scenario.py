@@ -7,15 +7,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive
 from fuzzytrack.simulation.noise import WHITE, Noise, Plots, noisy_plots
 from fuzzytrack.simulation.sensor_field import SensorField
 
 __all__ = ["FieldSensors", "PlotNoise", "Scenario", "Sensors"]
-
-Array = NDArray[np.float64]
 
 
 class Sensors(Protocol):

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import FileError
 from fuzzytrack.io.tracks import read_tracks
 from fuzzytrack.simulation.noise import Noise
@@ -37,7 +37,6 @@ from fuzzytrack.yamltree import Document, Node, Sequence, quoted
 
 __all__ = ["FORMAT_VERSION", "ScenarioReader"]
 
-Array = NDArray[np.float64]
 #: Times, positions, and the first scan, from 0, that counts unless the file says otherwise.
 Target = tuple[Array, Array, int]
 

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, positive
 from fuzzytrack.simulation.fusion import fuse
 from fuzzytrack.simulation.noise import WHITE, Noise, Plots, truth_of_runs
 
 __all__ = ["SPACINGS", "SensorField", "canonical_field", "sensor_grid"]
 
-Array = NDArray[np.float64]
 
 #: Distances between sensors in Llinas et al. (1998), section 4.1 (m).
 SPACINGS = {"dense": 2000.0, "medium": 5000.0, "sparse": 10000.0}

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.noise import Plots
 
 __all__ = ["prepare_start"]
-
-Array = NDArray[np.float64]
 
 
 def prepare_start(t: ArrayLike, z: ArrayLike, sigma: ArrayLike) -> tuple[Array, Plots]:

@@ -11,8 +11,9 @@ import operator
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, positive
 
 __all__ = [
@@ -23,8 +24,6 @@ __all__ = [
     "turning_target",
     "waypoints",
 ]
-
-Array = NDArray[np.float64]
 
 
 def constant_velocity(

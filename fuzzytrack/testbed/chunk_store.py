@@ -13,15 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.io.files import whole_file
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["ChunkStore"]
 
-Array = NDArray[np.float64]
 
 _FOLDER, _JOB = "chunks", "job.json"
 # They say what a scenario is for, and do not touch a number.

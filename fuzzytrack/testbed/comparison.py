@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.recordings.ragged import Batch, batches
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["Comparison", "compare", "compare_tracks"]
 
-Array = NDArray[np.float64]
 #: Called with the share of the work that is done.
-Progress = Callable[[float], None]
 
 # Coordinates a batch may hold: a tracker makes about ten arrays of this many floats (8 MB each).
 _BATCH = 1_000_000

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array, Mask
+
 __all__ = [
     "Consistency",
     "Estimate",
@@ -31,9 +33,6 @@ __all__ = [
     "run_means",
     "variance",
 ]
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,17 +5,18 @@ from __future__ import annotations
 import operator
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import replace
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.noise import Plots
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.starting import prepare_start
+from fuzzytrack.tasks import Progress
 from fuzzytrack.testbed.chunk_store import ChunkStore
 from fuzzytrack.testbed.results import Results, Sample
 from fuzzytrack.trackers.base import Tracker
@@ -26,9 +27,7 @@ from fuzzytrack.trackers.state import Gains
 
 __all__ = ["monte_carlo"]
 
-Array = NDArray[np.float64]
 #: Called with the share of the runs that are done.
-Progress = Callable[[float], None]
 
 # Coordinates a chunk may hold: a tracker makes about ten arrays of this many floats.
 _COORDINATES = 200_000

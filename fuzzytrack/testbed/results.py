@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import number, positive
 from fuzzytrack.testbed import metrics
 from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["QUANTITIES", "Quantity", "Results", "Sample"]
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 #: What a tracker's errors are of.
 Quantity = Literal["predicted", "filtered", "velocity"]

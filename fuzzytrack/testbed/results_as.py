@@ -6,16 +6,14 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.testbed.results import QUANTITIES, Quantity, Results
 
 if TYPE_CHECKING:
     import pandas
 
 __all__ = ["data_frame", "json_dict", "table"]
-
-Array = NDArray[np.float64]
 
 
 def table(results: Results) -> list[dict[str, Any]]:

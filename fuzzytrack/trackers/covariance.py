@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import nonnegative, number, within
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["TrackCovariance", "track_covariance"]
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import nonnegative, number, positive, within
 from fuzzytrack.lanes.runner import Recursion
 from fuzzytrack.trackers.base import trackers
@@ -17,7 +17,6 @@ from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["MANEUVERS", "InteractingModels"]
 
-Array = NDArray[np.float64]
 
 MANEUVERS = ("ca", "cv")
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.runner import InfinitePlotError, Recursion, Runner
@@ -22,7 +23,6 @@ from fuzzytrack.trackers.state import Gains, TrackState, spread
 
 __all__ = ["LaneTracker", "announce", "runner"]
 
-Array = NDArray[np.float64]
 
 GAINS = ("alpha", "beta", "gamma")
 #: Shapes of plots for which a tracker keeps a short way to the next state.

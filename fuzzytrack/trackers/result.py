@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.state import Gains, TrackState
 
 __all__ = ["KEPT", "TrackResult", "checked_keep"]
 
-Array = NDArray[np.float64]
 
 #: What a run may be asked to keep.
 KEPT = ("predicted", "filtered", "velocity", "acceleration", "innovation", "gains")

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import Rows
 
 __all__ = ["Gains", "TrackState"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
@@ -27,6 +27,7 @@ from fuzzytrack.schedulers import (
     QualityGains,
 )
 from fuzzytrack.simulation.published import TRACK_SETS, TrackSet, track_set
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker
@@ -35,8 +36,6 @@ from fuzzytrack.trackers.window_search import WindowSearch
 
 __all__ = ["FAMILIES", "Family", "Ranked", "prediction_mse", "rank", "stretched", "tune"]
 
-Array = NDArray[np.float64]
-Progress = Callable[[float], None]
 Numbers = Sequence[float]
 
 

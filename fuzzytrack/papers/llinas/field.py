@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.papers.llinas.sampling import PUBLISHED, SIGMA, linear_mean_error
 from fuzzytrack.papers.llinas.theory import rule_bases
 from fuzzytrack.papers.reproduction import Progress, Row, part, row
@@ -39,7 +39,6 @@ __all__ = [
     "visited_rows",
 ]
 
-Array = NDArray[np.float64]
 
 T1, T2, T3, T4, T5 = (
     "T1 fixed α-β",

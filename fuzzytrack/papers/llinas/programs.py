@@ -24,8 +24,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.papers.llinas.columns import Columns
 
 __all__ = [
@@ -38,7 +38,6 @@ __all__ = [
     "proposed",
 ]
 
-Array = NDArray[np.float64]
 Number = Callable[[float], Any]
 Plots = Sequence[Sequence[float]]
 Matrix = list[list[Any]]

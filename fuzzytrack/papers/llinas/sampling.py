@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, w_from_alpha_beta
 from fuzzytrack.papers.reproduction import Row, row
 from fuzzytrack.schedulers import KalmanCV
@@ -34,7 +35,6 @@ __all__ = [
     "second_differences_filtered",
 ]
 
-Array = NDArray[np.float64]
 
 SIGMA = 115.0
 PUBLISHED = (0.5377, 0.2018)

@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
@@ -24,7 +23,6 @@ from fuzzytrack.trackers.catalog import make_tracker
 
 __all__ = ["map_rows", "noise_rows", "operation_rows", "region_rows", "rule_bases"]
 
-Array = NDArray[np.float64]
 
 # -------------------------------------------------------------------- Table 2.4
 
