@@ -325,6 +325,10 @@ class _Builder:
         except FileError:
             raise  # it is a ValueError too
         except yaml.YAMLError as error:
+            if loader is not yaml.SafeLoader:
+                # The limits and messages of libyaml depend on its version; PyYAML's own parser
+                # refuses a text in the same words and at the same place on every system.
+                return _Builder(self.file, self.failure).build(text, yaml.SafeLoader)
             raise self._syntax(error) from None
         except (ValueError, OverflowError) as error:
             # PyYAML's own parser on escapes such as "\\UFFFFFFFF".

@@ -67,11 +67,16 @@ def _ascending(parameters: Parameters) -> bool:
 def _trapezoid(parameters: Parameters, x: str) -> str:
     a, b, c, d = parameters
     rise, fall = f"(1.0 if {x} >= {b!r} else 0.0)", f"(1.0 if {x} <= {c!r} else 0.0)"
-    if b - a > _STEEP:
-        rise = f"({x} - {a!r}) * {1 / (b - a)!r}"
-    if d - c > _STEEP:
-        fall = f"({d!r} - {x}) * {1 / (d - c)!r}"
+    if b > a:
+        rise = f"({x} - {a!r}) {_times_inverse(b - a)}"
+    if d > c:
+        fall = f"({d!r} - {x}) {_times_inverse(d - c)}"
     return f"max(0.0, min(1.0, min({rise}, {fall})))"
+
+
+def _times_inverse(width: float) -> str:
+    """Division by a width; by multiplication, which is faster, where the inverse is finite."""
+    return f"* {1 / width!r}" if width > _STEEP else f"/ {width!r}"
 
 
 def _triangle(parameters: Parameters, x: str) -> str:
@@ -96,14 +101,16 @@ def _bell(parameters: Parameters, x: str) -> str:
     return f"1.0 / (1.0 + min(abs(({x} - {c!r}) / {a!r}), {far!r}) ** {2 * b!r})"
 
 
-def _s_curve(a: float, b: float, x: str) -> str:
+# The ends come first: between neighboring floats the middle is rounded to one of them. At the middle
+# itself the half counts that scikit-fuzzy takes there, which differs from shape to shape.
+def _s_curve(a: float, b: float, x: str, lower: str) -> str:
     middle, width = (a + b) / 2, b - a
     if width == 0:
         return f"(1.0 if {x} >= {b!r} else 0.0)"
     low, high = f"(({x} - {a!r}) / {width!r})", f"(({x} - {b!r}) / {width!r})"
     return (
-        f"(0.0 if {x} <= {a!r} else 2.0 * {low} * {low} if {x} <= {middle!r} "
-        f"else 1.0 - 2.0 * {high} * {high} if {x} <= {b!r} else 1.0)"
+        f"(0.0 if {x} <= {a!r} else 1.0 if {x} >= {b!r} else 2.0 * {low} * {low} "
+        f"if {x} {lower} {middle!r} else 1.0 - 2.0 * {high} * {high})"
     )
 
 
@@ -113,8 +120,8 @@ def _z_curve(a: float, b: float, x: str) -> str:
         return f"(1.0 if {x} <= {a!r} else 0.0)"
     low, high = f"(({x} - {a!r}) / {width!r})", f"(({x} - {b!r}) / {width!r})"
     return (
-        f"(1.0 if {x} <= {a!r} else 1.0 - 2.0 * {low} * {low} if {x} <= {middle!r} "
-        f"else 2.0 * {high} * {high} if {x} <= {b!r} else 0.0)"
+        f"(1.0 if {x} <= {a!r} else 0.0 if {x} >= {b!r} else 1.0 - 2.0 * {low} * {low} "
+        f"if {x} < {middle!r} else 2.0 * {high} * {high})"
     )
 
 
@@ -202,7 +209,7 @@ SHAPES: dict[str, Shape] = {
         lambda p: (p[1], math.inf),
         lambda p: (p[0], math.inf),
         _everywhere_ends,
-        lambda p, x: _s_curve(p[0], p[1], x),
+        lambda p, x: _s_curve(p[0], p[1], x, "<"),
     ),
     "zmf": Shape(
         ("a", "b"),
@@ -220,7 +227,7 @@ SHAPES: dict[str, Shape] = {
         lambda p: (p[1], p[2]),
         _whole,
         _everywhere_ends,
-        lambda p, x: f"{_s_curve(p[0], p[1], x)} * {_z_curve(p[2], p[3], x)}",
+        lambda p, x: f"{_s_curve(p[0], p[1], x, '<=')} * {_z_curve(p[2], p[3], x)}",
     ),
     "singleton": Shape(
         ("value",),
@@ -300,7 +307,8 @@ class FuzzySet:
         grades = np.where((points >= start) & (points <= end), 1.0, 0.0)
         if self.shape != "singleton":
             curve = self._from_scikit_fuzzy(points.ravel()).reshape(points.shape)
-            grades = np.where(grades == 1.0, 1.0, curve)
+            # Between neighboring floats scikit-fuzzy's halves of a curve overlap.
+            grades = np.where(grades == 1.0, 1.0, np.clip(curve, 0.0, 1.0))
         return np.where(np.isnan(points), np.nan, grades)
 
     def _from_scikit_fuzzy(self, x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,4 +1,5 @@
 import math
+from itertools import combinations_with_replacement, product
 
 import numpy as np
 import pytest
@@ -187,6 +188,40 @@ def test_grades_are_within_0_and_1_for_all_parameters(fuzzy_set, x):
     assert evaluate(fuzzy_set, x) == pytest.approx(grade, abs=1e-13)
     for breakpoint_ in fuzzy_set.breakpoints():
         assert 0.0 <= float(fuzzy_set.membership(breakpoint_)) <= 1.0
+
+
+# Corners that coincide, that are neighboring floats, and that are too near to 0 to have an inverse.
+CORNERS = [-1e100, -1.0, -1e-323, -5e-324, 0.0, 5e-324, 1.5e-323, 3e-308, *(
+    1.0 + k * 2.0**-52 for k in (0, 1, 3)), 1e100]  # fmt: skip
+WIDTHS = [1e-100, 2e-16, 1.0, 1e100]
+CENTERS = [-1e100, 0.0, 5e-324, 1.0, 1e100]
+EXTREMES = {
+    "trimf": list(combinations_with_replacement(CORNERS, 3)),
+    "trapmf": list(combinations_with_replacement(CORNERS, 4)),
+    "pimf": list(combinations_with_replacement(CORNERS, 4)),
+    "smf": list(combinations_with_replacement(CORNERS, 2)),
+    "zmf": list(combinations_with_replacement(CORNERS, 2)),
+    "gaussmf": list(product(CENTERS, WIDTHS)),
+    "gauss2mf": [
+        (low, left, high, right)
+        for low, high in combinations_with_replacement(CENTERS, 2)
+        for left, right in product(WIDTHS, WIDTHS)
+    ],
+    "gbellmf": list(product(WIDTHS, [1e-100, 0.5, 1e6], CENTERS)),
+    "sigmf": list(product(CENTERS, [-1e100, -5e-324, 5e-324, 1e-100, 3.0, 1e100])),
+    "singleton": [(value,) for value in CORNERS],
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_grades_at_extreme_corners(shape):
+    points = np.array(sorted({*CORNERS, *(np.nextafter(x, 2.0 * x) for x in CORNERS), *CENTERS}))
+    for parameters in EXTREMES[shape]:
+        fuzzy_set = FuzzySet("s", shape, parameters)
+        grades = fuzzy_set.membership(points)
+        assert np.all((grades >= 0.0) & (grades <= 1.0)), parameters
+        scalar = [evaluate(fuzzy_set, float(x)) for x in points]
+        np.testing.assert_allclose(scalar, grades, rtol=0, atol=1e-13, err_msg=str(parameters))
 
 
 @pytest.mark.parametrize(("shape", "parameters"), CASES + [s[:2] for s in STEPS])
