@@ -13,8 +13,8 @@ from benchmarks.report import NotMeasured, Row, Target
 from benchmarks.scale import Scale
 from benchmarks.timing import ratio, take_turns
 from benchmarks.work import difference, times_and_plots, warm
+from fuzzytrack.schedulers import KalmanCA, KalmanCV
 from fuzzytrack.schedulers.innovation import InnovationScheduler
-from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
 from fuzzytrack.trackers.imm import InteractingModels
 
 __all__ = ["acceleration", "imm", "kim_lee", "simd", "velocity"]

@@ -1,9 +1,14 @@
-"""Imports point down the layers only."""
+"""Imports point down the layers only, and files are named after what they hold."""
 
 import ast
+import importlib
 from pathlib import Path
 
 import pytest
+
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.schedulers import schedulers
+from fuzzytrack.trackers import trackers
 
 PACKAGE = Path(__file__).resolve().parents[1] / "fuzzytrack"
 
@@ -55,3 +60,26 @@ def test_imports_point_down(path):
 def test_the_check_sees_imports():
     assert "fuzzy" in set(imported_rooms(PACKAGE / "schedulers" / "fuzzy.py"))
     assert "gains" in set(imported_rooms(PACKAGE / "schedulers" / "fuzzy.py"))
+
+
+# A normalization shares its file with its variants: the first word of its name is the file's.
+NAMED_AS_REGISTERED = [
+    *((plugin, plugin.name) for registry in (schedulers, trackers) for plugin in registry),
+    *((plugin, plugin.name.partition("-")[0]) for plugin in normalizations),
+]
+
+
+@pytest.mark.parametrize(
+    ("plugin", "name"), NAMED_AS_REGISTERED, ids=lambda value: getattr(value, "name", "")
+)
+def test_a_file_is_named_as_what_it_holds_is_registered(plugin, name):
+    if plugin.package == "fuzzytrack":
+        assert plugin.factory.__module__.rpartition(".")[2] == name.replace("-", "_")
+
+
+@pytest.mark.parametrize("room", ["schedulers", "trackers", "normalizations"])
+def test_all_that_is_registered_is_exported(room):
+    module = importlib.import_module(f"fuzzytrack.{room}")
+    for plugin in getattr(module, room):
+        if plugin.package == "fuzzytrack":
+            assert plugin.factory.__name__ in module.__all__

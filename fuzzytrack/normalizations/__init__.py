@@ -1,6 +1,19 @@
 """Normalizations: how an innovation becomes the inputs of a rule base."""
 
-from fuzzytrack.normalizations.chan import Normalization, normalizations
-from fuzzytrack.normalizations.predicted import Scale
+from fuzzytrack.normalizations.base import Normalization, normalizations
+from fuzzytrack.normalizations.chan import Chan, ChanMagnitude, ChanSigned
+from fuzzytrack.normalizations.predicted import Predicted
+from fuzzytrack.normalizations.scale import Scale
+from fuzzytrack.normalizations.smoothed import Smoothed, SmoothedMagnitude
 
-__all__ = ["Normalization", "Scale", "normalizations"]
+__all__ = [
+    "Chan",
+    "ChanMagnitude",
+    "ChanSigned",
+    "Normalization",
+    "Predicted",
+    "Scale",
+    "Smoothed",
+    "SmoothedMagnitude",
+    "normalizations",
+]

@@ -1,86 +1,19 @@
-"""Normalisations: from an innovation in metres to the inputs of a rule base.
-
-A normalisation is written like a scheduler's kernel: one scalar function with its own memory. Those
-that need the noise level are in `fuzzytrack.normalizations.predicted`.
-"""
+"""Chan's normalizations: the innovation over the larger of itself and the change of observation."""
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from fuzzytrack.kernels.language import Memory
-from fuzzytrack.plugins import Registry
+from fuzzytrack.normalizations.base import Normalization, Normalize, normalizations
 
-__all__ = [
-    "Chan",
-    "ChanMagnitude",
-    "ChanSigned",
-    "Feedback",
-    "Normalization",
-    "Normalize",
-    "normalizations",
-]
-
-#: ``normalize(innovation, change, dt, sigma, memory) -> (signals, memory)``
-Normalize = Callable[[Any, Any, float, Any, Memory], tuple[tuple[float, ...], Memory]]
-
-#: ``feedback(memory, alpha, beta, gamma, dt, sigma) -> memory``
-Feedback = Callable[[Memory, float, float, float, float, Any], Memory]
+__all__ = ["Chan", "ChanMagnitude", "ChanSigned"]
 
 #: What is smaller counts as nothing; single precision has it, too.
 _LEAST = 1e-30
-
-
-class Normalization(ABC):
-    """Turns innovation and change of observation into dimensionless signals.
-
-    Attributes
-    ----------
-    source : str
-        Paper, or other origin.
-    signals : tuple of str
-        What the kernel returns, in order; a rule base takes its inputs from them, first to first.
-    coupled, needs_sigma, sees_every_step : bool
-        As for a `fuzzytrack.schedulers.base.GainScheduler`.
-
-    Notes
-    -----
-    The numbers that its constructor takes may stand beside its name in the scheduler settings of a
-    rule base.
-    Where the rule base opens with a growing memory, also one that does not see every step is called
-    with zeros at the first plot of a track, and at the second if velocity starts from it.
-    """
-
-    source: ClassVar[str] = ""
-    signals: ClassVar[tuple[str, ...]] = ()
-    coupled: ClassVar[bool] = False
-    needs_sigma: ClassVar[bool] = False
-    sees_every_step: ClassVar[bool] = False
-
-    @abstractmethod
-    def kernel(self, n_axes: int) -> Normalize:
-        """Scalar function to signals and new memory; arguments as of a scheduler's kernel."""
-
-    @abstractmethod
-    def initial_memory(self, n_axes: int) -> Memory:
-        """Memory of a new track."""
-
-    def feedback(self, n_axes: int) -> Feedback | None:
-        """Scalar function from the gains that were chosen to the memory; None unless overridden.
-
-        It is called after inference, with the memory that the kernel returned and the gains for the
-        same plot; at steps whose gains are dropped too, if the normalisation sees every step.
-        """
-        return None
-
-
-normalizations: Registry[type[Normalization]] = Registry(
-    "normalization", "fuzzytrack.normalizations"
-)
 
 
 def relative(part: float, whole: float) -> float:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from fuzzytrack.gains.joseph import correct_ca, predict_ca
 from fuzzytrack.lanes.layout import Rows
 
 if TYPE_CHECKING:
@@ -77,24 +78,19 @@ def _predicted(model: Model, dt: float, q: float, accelerates: bool) -> Model:
     p23 = p23 if accelerates else 0.0
     p33 = p33 if accelerates else 0.0
     g = 0.5 * dt * dt
-    # Rows of ΦP, then ΦPΦᵀ + Q.
-    a11 = p11 + dt * p12 + g * p13
-    a12 = p12 + dt * p22 + g * p23
-    a13 = p13 + dt * p23 + g * p33
-    a22 = p22 + dt * p23
-    a23 = p23 + dt * p33
-    p11 = a11 + dt * a12 + g * a13 + q * g * g
-    p13 = a13 + q * g if accelerates else 0.0
-    p23 = a23 + q * dt if accelerates else 0.0
+    p11, p12, p13, p22, p23, p33 = predict_ca(p11, p12, p13, p22, p23, p33, dt, g)
+    p11 = p11 + q * g * g
+    p13 = p13 + q * g if accelerates else 0.0
+    p23 = p23 + q * dt if accelerates else 0.0
     p33 = p33 + q if accelerates else 0.0
     return (
         x + v * dt + a * g,
         v + a * dt,
         a,
         p11 if p11 > 0.0 else 0.0,
-        a12 + dt * a13 + q * g * dt,
+        p12 + q * g * dt,
         p13,
-        a22 + dt * a23 + q * dt * dt,
+        p22 + q * dt * dt,
         p23,
         p33,
     )
@@ -106,19 +102,17 @@ def _corrected(
     """Model after a plot of variance `r` with innovation `e` of variance `s`; Joseph form."""
     x, v, a, p11, p12, p13, p22, p23, p33 = model
     k1, k2, k3 = gains
-    rest = 1.0 - k1
-    n22 = p22 - k2 * (2.0 * p12 - k2 * s)
-    n33 = p33 - k3 * (2.0 * p13 - k3 * s)
+    n11, n12, n13, n22, n23, n33 = correct_ca(p11, p12, p13, p22, p23, p33, k1, k2, k3, s, r)
     return (
         x + k1 * e,
         v + k2 * e,
         a + k3 * e,
-        rest * rest * p11 + k1 * k1 * r,
-        rest * (p12 - k2 * p11) + k1 * k2 * r,
-        rest * (p13 - k3 * p11) + k1 * k3 * r,
+        n11,
+        n12,
+        n13,
         # Rounding after a long gap may take more than there is.
         n22 if n22 > 0.0 else 0.0,
-        p23 - k2 * p13 - k3 * (p12 - k2 * s),
+        n23,
         n33 if n33 > 0.0 else 0.0,
     )
 

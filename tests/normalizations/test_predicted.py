@@ -8,12 +8,7 @@ from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker, FuzzyScheduler, FuzzySystem, loads_rulebase
 from fuzzytrack.gains import noise_ratio
-from fuzzytrack.normalizations.predicted import (
-    Predicted,
-    Scale,
-    Smoothed,
-    SmoothedMagnitude,
-)
+from fuzzytrack.normalizations import Predicted, Scale, Smoothed, SmoothedMagnitude
 from fuzzytrack.schedulers import GainScheduler
 
 metres = st.floats(-1e6, 1e6)

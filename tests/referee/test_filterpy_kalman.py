@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker
-from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
+from fuzzytrack.schedulers import KalmanCA, KalmanCV
 
 kalman = pytest.importorskip("filterpy.kalman", reason="FilterPy is not installed")
 

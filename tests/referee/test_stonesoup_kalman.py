@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker
-from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
+from fuzzytrack.schedulers import KalmanCA, KalmanCV
 
 with warnings.catch_warnings():
     # What it warns of while it is imported is its own affair.

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker
-from fuzzytrack.schedulers.growing_memory import BenedictBordner, GrowingMemory, LinearCombination
+from fuzzytrack.schedulers import BenedictBordner, GrowingMemory, LinearCombination
 
 STEPS = np.arange(12.0)
 

@@ -3,7 +3,7 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.gains import growing_memory, kalata
-from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
+from fuzzytrack.schedulers import KalmanCA, KalmanCV
 
 
 def matrices(order, dt):

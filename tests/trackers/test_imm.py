@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker
-from fuzzytrack.schedulers.kalman_cv import KalmanCA, KalmanCV
+from fuzzytrack.schedulers import KalmanCA, KalmanCV
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.imm import InteractingModels
 from fuzzytrack.trackers.imm_step import _exp
