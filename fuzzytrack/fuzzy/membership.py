@@ -101,8 +101,8 @@ def _bell(parameters: Parameters, x: str) -> str:
     return f"1.0 / (1.0 + min(abs(({x} - {c!r}) / {a!r}), {far!r}) ** {2 * b!r})"
 
 
-# The ends come first: between neighboring floats the middle is rounded to one of them. At the middle
-# itself the half counts that scikit-fuzzy takes there, which differs from shape to shape.
+# The ends come first: between neighboring floats the middle is rounded to one of them. At the
+# middle itself the half counts that scikit-fuzzy takes there, which differs from shape to shape.
 def _s_curve(a: float, b: float, x: str, lower: str) -> str:
     middle, width = (a + b) / 2, b - a
     if width == 0:
