@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.pieces import Piece
-from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 from fuzzytrack.trackers.result import checked_keep
-from fuzzytrack.trackers.state import TrackState
+from fuzzytrack.trackers.track_store import Slots, TrackStore
 
 __all__ = ["OpenTracks", "TrackedPiece", "run_iter"]
-
-Places = NDArray[np.int64]
 
 _GAINS = ("alpha", "beta", "gamma")
 
@@ -121,7 +117,8 @@ class OpenTracks:
         self.tracker, self.sigma = tracker, sigma
         self._keep = checked_keep(keep)
         self._slot: dict[str, int] = {}
-        self._store = _Store()
+        self._store: TrackStore | None = None
+        self._first = np.empty(0)
 
     def __len__(self) -> int:
         """Tracks that were seen so far."""
@@ -130,8 +127,10 @@ class OpenTracks:
     @property
     def duration(self) -> float:
         """Sum of the durations of all tracks (s)."""
-        count = len(self)
-        return float((self._store.last[:count] - self._store.first[:count]).sum())
+        if self._store is None:
+            return 0.0
+        slots = self._store.slots
+        return float((self._store.time(slots) - self._first[slots]).sum())
 
     def advance(self, piece: Piece) -> TrackedPiece:
         """Track one more piece.
@@ -149,24 +148,31 @@ class OpenTracks:
         outputs = {name: np.empty(piece.plots.shape) for name in names}
         if len(piece.time):
             _check_finite(piece)
-            if not self._slot:
-                announce(self.tracker, piece.plots.shape[1], piece.plots.size)
-            self._advance(piece, outputs)
+            self._advance(piece, outputs, self._store_for(piece))
         return TrackedPiece(piece, outputs)
 
-    def _advance(self, piece: Piece, outputs: Mapping[str, Array]) -> None:
+    def _store_for(self, piece: Piece) -> TrackStore:
+        n_axes = piece.plots.shape[1]
+        if self._store is None:
+            announce(self.tracker, n_axes, piece.plots.size)
+            self._store = TrackStore(self.tracker, n_axes)
+        if self._store.n_axes != n_axes:
+            raise ValueError(f"plots: {n_axes} axes; the pieces before have {self._store.n_axes}")
+        return self._store
+
+    def _advance(self, piece: Piece, outputs: Mapping[str, Array], store: TrackStore) -> None:
         codes = piece.ids.codes
         order = np.argsort(codes, kind="stable")
         counts = np.bincount(codes)
         starts = np.cumsum(counts) - counts
         present = np.flatnonzero(counts)
         counts, starts = counts[present], starts[present]
-        slot, store = self._slot, self._store
-        names = piece.ids.names
-        slots = np.array([slot.setdefault(names[k], len(slot)) for k in present.tolist()])
-        store.make_room(len(slot), piece.plots.shape[1])
-        _check_times(piece, order, starts, store.last[slots])
-        new = np.isnan(store.first[slots])
+        names = [piece.ids.names[k] for k in present.tolist()]
+        slots = np.array([self._slot.get(name, -1) for name in names])
+        new = slots < 0
+        last = np.full(len(slots), math.nan)
+        last[~new] = store.time(slots[~new])
+        _check_times(piece, order, starts, last)
         # Only tracks with as many plots can go on together: padding would be remembered.
         kinds = 2 * counts + new
         by_kind = np.argsort(kinds, kind="stable")
@@ -174,65 +180,20 @@ class OpenTracks:
         for members in np.split(by_kind, cuts):
             steps = np.arange(counts[members[0]])[:, None]
             places = order[starts[members] + steps]
-            whom = slots[members]
-            state = None if new[members[0]] else store.gather(whom)
+            state = None if new[members[0]] else store.gather(slots[members])
             result = self.tracker.run(
                 piece.time[places], piece.plots[places], self.sigma, state=state, keep=self._keep
             )
             for name, values in outputs.items():
                 values[places] = getattr(result.gains if name in _GAINS else result, name)
+            assert result.state is not None
             if state is None:
-                store.first[whom] = result.time[0]
-            store.scatter(whom, result.state)
-
-
-# -------------------------------------------------------------------- states
-
-
-@dataclass(eq=False)
-class _Store:
-    """States side by side, a row each: what is near in time is fetched together."""
-
-    first: Array = field(default_factory=lambda: np.empty(0))
-    last: Array = field(default_factory=lambda: np.empty(0))
-    numbers: Array | None = None
-    rows: Rows | None = None
-    n_axes: int = 0
-
-    def make_room(self, count: int, n_axes: int) -> None:
-        """For so many tracks in all."""
-        if self.n_axes not in (0, n_axes):
-            raise ValueError(f"plots: {n_axes} axes; the pieces before have {self.n_axes}")
-        self.n_axes = n_axes
-        have = len(self.first)
-        if count > have:
-            # In place where the system can move pages, and never twice the memory.
-            room = count + count // 4
-            for times in (self.first, self.last):
-                times.resize(room, refcheck=False)
-                times[have:] = math.nan
-            if self.numbers is not None:
-                self.numbers.resize((room, self.numbers.shape[1]), refcheck=False)
-
-    def gather(self, slots: Places) -> TrackState:
-        """State of some tracks, as of a batch."""
-        assert self.numbers is not None
-        assert self.rows is not None
-        rows, count = self.rows, len(slots)
-        lanes = self.numbers[slots].reshape(count, rows.kept, -1).swapaxes(0, 1)
-        shape = (count, self.n_axes)
-        return TrackState(self.last[slots], shape, lanes.reshape(rows.kept, -1), rows)
-
-    def scatter(self, slots: Places, state: TrackState | None) -> None:
-        """Keep the state of a batch."""
-        assert state is not None
-        kept, count = state.rows.kept, len(slots)
-        lanes = state.lanes.reshape(kept, count, -1).swapaxes(0, 1).reshape(count, -1)
-        if self.numbers is None:
-            self.numbers = np.zeros((len(self.first), lanes.shape[1]))
-            self.rows = state.rows
-        self.numbers[slots] = lanes
-        self.last[slots] = state.time
+                begun = store.add(result.state)
+                self._slot.update(zip([names[k] for k in members], begun.tolist(), strict=True))
+                self._first.resize(store.room, refcheck=False)
+                self._first[begun] = result.time[0]
+            else:
+                store.scatter(slots[members], result.state)
 
 
 # -------------------------------------------------------------------- checks
@@ -249,7 +210,7 @@ def _check_finite(piece: Piece) -> None:
             raise DataError(f"{_where(piece, row)}: {name} {value}; expected {wanted}")
 
 
-def _check_times(piece: Piece, order: Places, starts: Places, last: Array) -> None:
+def _check_times(piece: Piece, order: Slots, starts: Slots, last: Array) -> None:
     times = piece.time[order]
     before = np.empty_like(times)
     before[1:] = times[:-1]

@@ -1,0 +1,264 @@
+"""Tracks that come and go: the states of many tracks, of which any can be stepped together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.state import TrackState
+
+__all__ = ["Slots", "TrackStore"]
+
+#: Numbers by which a store knows its tracks, from 0 on.
+Slots = NDArray[np.intp]
+
+
+class TrackStore:
+    """States of many tracks, each at a time of its own.
+
+    A track is known by its slot, a small whole number that `add` gives it and that another track
+    may get once it was dropped. Any of the tracks can be stepped or predicted together, in any
+    order; the numbers are those of each track run by itself, to the last bit.
+
+    Parameters
+    ----------
+    tracker : Tracker
+        Of all tracks.
+    n_axes : int
+        Axes of the plots.
+
+    Raises
+    ------
+    ValueError
+        If there is no axis.
+
+    Notes
+    -----
+    Takes ``8·rows.kept`` bytes a lane (see `fuzzytrack.lanes.layout.Rows`) and 8 a track, for the
+    largest number of tracks there were at once and a quarter more. Slots of dropped tracks are
+    given out again, the last one dropped first.
+
+    Examples
+    --------
+    >>> from fuzzytrack import AlphaBetaTracker, FixedGains
+    >>> from fuzzytrack.trackers.track_store import TrackStore
+    >>> tracker = AlphaBetaTracker(FixedGains(0.5, 0.2))
+    >>> store = TrackStore(tracker, n_axes=1)
+    >>> slots = store.add(tracker.start([[0.0], [50.0]], t=0.0))
+    >>> _ = store.step(slots, [[10.0], [40.0]], t=1.0)
+    >>> store.drop(slots[:1])
+    >>> store.slots
+    array([1])
+    >>> store.gather(store.slots).velocity
+    array([[-10.]])
+    """
+
+    def __init__(self, tracker: Tracker, n_axes: int) -> None:
+        self.tracker, self.n_axes = tracker, n_axes
+        # Without a plot, so the standard deviation is of no meaning.
+        nobody = tracker.start(np.empty((0, n_axes)), 0.0, 1.0)
+        self._rows = nobody.rows
+        # A row a track: what is near in time is fetched together.
+        self._numbers = np.empty((0, nobody.rows.kept, n_axes // nobody.rows.n_axes))
+        # NaN in slots without a track.
+        self._time = np.empty(0)
+        self._used = 0
+        self._free: list[int] = []
+
+    def __len__(self) -> int:
+        """Number of tracks."""
+        return self._used - len(self._free)
+
+    @property
+    def slots(self) -> Slots:
+        """Slots of all tracks, in increasing order."""
+        return np.flatnonzero(~np.isnan(self._time[: self._used]))
+
+    @property
+    def room(self) -> int:
+        """Number of slots, with and without a track.
+
+        What is kept beside the store, one entry a slot, needs this length.
+        """
+        return len(self._time)
+
+    def time(self, slots: ArrayLike) -> Array:
+        """Times of the last steps of some tracks (s).
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+        """
+        times: Array = self._time[self._checked(slots)]
+        return times
+
+    def add(self, state: TrackState) -> Slots:
+        """Take in new tracks.
+
+        Parameters
+        ----------
+        state : TrackState
+            Of a batch of tracks, shape (n, n_axes), or of one, shape (n_axes,): from the tracker's
+            `start`, or a result.
+
+        Returns
+        -------
+        ndarray of int, shape (n,)
+            Their slots, in the same order.
+
+        Raises
+        ------
+        ValueError
+            If the state has another shape, or comes from another kind of tracker.
+        """
+        count = math.prod(state.shape[:-1])
+        self._check_state(state, count)
+        reused = [self._free.pop() for _ in range(min(count, len(self._free)))]
+        begin = self._used
+        self._used += count - len(reused)
+        self._make_room(self._used)
+        slots = np.array([*reused, *range(begin, self._used)], dtype=np.intp)
+        self._put(slots, state)
+        return slots
+
+    def drop(self, slots: ArrayLike) -> None:
+        """End some tracks; their slots may be given out again.
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+
+        Raises
+        ------
+        ValueError
+            If there is no track in a slot, or a slot is named twice.
+        """
+        whom = self._checked(slots)
+        self._time[whom] = math.nan
+        self._free.extend(whom.tolist())
+
+    def gather(self, slots: ArrayLike) -> TrackState:
+        """State of some tracks, as of a batch; a copy.
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+
+        Returns
+        -------
+        TrackState
+            Of shape (n, n_axes), each track with its own time.
+
+        Raises
+        ------
+        ValueError
+            As for `drop`.
+        """
+        whom = self._checked(slots)
+        numbers = self._numbers[whom]
+        count, kept, per_track = numbers.shape
+        lanes = numbers.swapaxes(0, 1).reshape(kept, count * per_track)
+        return TrackState(self._time[whom], (count, self.n_axes), lanes, self._rows)
+
+    def scatter(self, slots: ArrayLike, state: TrackState) -> None:
+        """Replace the state of some tracks.
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+        state : TrackState
+            Their new state, of shape (n, n_axes) or for one track (n_axes,).
+
+        Raises
+        ------
+        ValueError
+            As for `drop`, and as for `add`.
+        """
+        whom = self._checked(slots)
+        self._check_state(state, len(whom))
+        self._put(whom, state)
+
+    def step(
+        self, slots: ArrayLike, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None
+    ) -> TrackState:
+        """Step some tracks by a plot each; the others stay as they are.
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+        z : array_like, shape (n, n_axes)
+            Their plots (m); NaN where missed.
+        t : array_like, shape () or (n,)
+            Times (s), common or each track's own, later than those of the tracks.
+        sigma : array_like, optional
+            Standard deviation of the plots (m), broadcast against `z`.
+
+        Returns
+        -------
+        TrackState
+            State of these tracks after the step.
+
+        Raises
+        ------
+        DataError, ValueError
+            As for `drop`, and as for the tracker's `step`. No track is then changed.
+        """
+        state = self.tracker.step(self.gather(slots), z, t, sigma)
+        self.scatter(slots, state)
+        return state
+
+    def _put(self, slots: Slots, state: TrackState) -> None:
+        _, kept, per_track = self._numbers.shape
+        lanes = state.lanes.reshape(kept, len(slots), per_track)
+        self._numbers[slots] = lanes.swapaxes(0, 1)
+        self._time[slots] = state.time
+
+    def _make_room(self, count: int) -> None:
+        """For so many tracks in all."""
+        have = self.room
+        if count > have:
+            room = count + count // 4
+            # In place where the system can move pages, and never twice the memory; nobody else
+            # has a view of them. Arrays from a pickle belong to it, and are copied once.
+            for name in ("_time", "_numbers"):
+                array = np.require(getattr(self, name), requirements="O")
+                array.resize((room, *array.shape[1:]), refcheck=False)
+                setattr(self, name, array)
+            self._time[have:] = math.nan
+
+    def _checked(self, slots: ArrayLike) -> Slots:
+        """Slots as an array, if there is a track in each and none is named twice."""
+        whom = np.asarray(slots)
+        if whom.ndim != 1 or (whom.size and whom.dtype.kind not in "iu"):
+            raise ValueError(
+                f"slots: needs whole numbers, shape (n,); got {whom.dtype}, shape {whom.shape}"
+            )
+        whom = whom.astype(np.intp, copy=False)
+        live = (whom >= 0) & (whom < self._used)
+        live[live] = ~np.isnan(self._time[whom[live]])
+        if not live.all():
+            raise ValueError(f"slots: there is no track in slot {whom[~live][0]}")
+        ordered = np.sort(whom)
+        twice = ordered[1:] == ordered[:-1]
+        if twice.any():
+            raise ValueError(f"slots: slot {ordered[1:][twice][0]} is named twice")
+        return whom
+
+    def _check_state(self, state: TrackState, count: int) -> None:
+        alone = (self.n_axes,)
+        if state.shape != (count, *alone) and not (count == 1 and state.shape == alone):
+            raise ValueError(
+                f"state: shape {state.shape} does not fit; {count} tracks of {self.n_axes} axes "
+                f"have {(count, *alone)}"
+            )
+        if state.rows != self._rows:
+            raise ValueError("state: it comes from another kind of tracker than that of the store")
