@@ -1,21 +1,40 @@
-"""Bad input ends in one line and exit status 2, never in a traceback."""
+"""Error messages of the commands: one line on stderr and exit status 2, never a traceback."""
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
+from collections.abc import Iterable
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from fuzzytrack.errors import FileError, NoRuleFiresWarning, PluginWarning
 
-__all__ = ["Commands", "one_line"]
+__all__ = ["Command", "Commands", "one_line"]
+
+# A message about arguments begins with their names: "jobs: ...", "jobs and scheduler: ...".
+_ARGUMENTS = re.compile(r"\w+(?: and \w+)*(?=: )")
+
+
+class Command(TyperCommand):
+    """A command; a message about an argument of a function names the option instead."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except ValueError as error:
+            message = _with_options(str(error), self.params)
+            if message == str(error):
+                raise
+            raise ValueError(message) from error
 
 
 class Commands(TyperGroup):
-    """The commands, with what goes wrong in any of them put into one line on stderr."""
+    """A group of commands; an error in any of them becomes one line on stderr."""
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run a command and leave with its exit status."""
@@ -40,12 +59,22 @@ class Commands(TyperGroup):
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
-            # typer would make its own end of it.
+            # typer would print a message of its own.
             raise typer.Exit(_complain("interrupted", 130)) from None
 
 
+def _with_options(message: str, parameters: Iterable[Any]) -> str:
+    """Message with the names of arguments at its beginning written as the options for them."""
+    found = _ARGUMENTS.match(message)
+    if found is None:
+        return message
+    options = {p.name: next((o for o in p.opts if o.startswith("--")), p.name) for p in parameters}
+    named = " and ".join(options.get(name, name) for name in found.group().split(" and "))
+    return named + message[found.end() :]
+
+
 def one_line(error: Exception) -> str:
-    """Say in one line what is wrong; a place in a file comes first, as compilers print it."""
+    """Error as one line; a place in a file comes first, as compilers print it."""
     if isinstance(error, FileError) and error.location:
         return _printable(str(error))
     if isinstance(error, OSError) and error.filename is not None:
@@ -62,7 +91,7 @@ def _usage(error: Any) -> str:
 
 
 def _printable(text: str) -> str:
-    """Leave nothing in a message that a terminal would obey."""
+    """Escape the characters of a message that would control the terminal."""
     line = " ".join(part.strip() for part in text.splitlines())
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
 

@@ -15,12 +15,12 @@ from fuzzytrack.cli.compare import trackers_named
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show, with_error
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import check_output, whole_file
-from fuzzytrack.recordings.workers import workers
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_source, shipped_scenarios
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.workers import workers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,13 +61,11 @@ def experiment(
         return
     if resume and output is None:
         raise ValueError("--resume needs -o DIR, the folder of the job to go on with")
-    if scheduler is not None and jobs > 1:
-        raise ValueError("--jobs and --scheduler: give one; a cluster has workers of its own")
     drawn = load_scenario(scenario)
     chosen = _chosen(trackers, drawn)
-    folder = None if output is None else _folder(output)
     try:
         with workers(jobs, scheduler) as executor, progress("simulating") as watch:
+            folder = None if output is None else _folder(output)
             found = monte_carlo(
                 drawn,
                 chosen,
@@ -80,7 +78,7 @@ def experiment(
             )
         written = [] if folder is None else _write(folder, found)
     except KeyboardInterrupt:
-        if folder is None:
+        if output is None:
             raise
         typer.echo(f"interrupted; what is done is in {output}, --resume goes on", err=True)
         raise typer.Exit(130) from None

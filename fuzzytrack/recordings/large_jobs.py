@@ -14,10 +14,10 @@ from fuzzytrack.io.tables import table_writer
 from fuzzytrack.recordings.partitions import check_output_folder, track_partitions
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
-from fuzzytrack.recordings.workers import workers
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.workers import workers
 
 __all__ = ["LargeJob"]
 

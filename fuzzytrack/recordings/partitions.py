@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from itertools import islice
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -20,17 +20,12 @@ from fuzzytrack.io.pieces import ROWS, read_pieces
 from fuzzytrack.io.shuffle import read_partition, write_partitions
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
+from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 
 __all__ = ["check_output_folder", "track_partitions"]
 
 Part = TypeVar("Part")
-
-# Tasks given to an executor at a time, done or not.
-_AHEAD = 128
-# Times that an executor is given a task that fails. Dask's reports a finished task as failed if its
-# worker dies while the result is fetched.
-_TRIES = 3
 
 
 @dataclass(frozen=True)
@@ -62,7 +57,7 @@ def track_partitions(
     partitions: int = 16,
     rows: int = ROWS,
     executor: Executor | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Totals:
     """Track a recording, its tracks divided among partitions by their identity.
 
@@ -124,9 +119,11 @@ def track_partitions(
         )
         job.sorted_file(0).parent.mkdir()
         steps = _Steps(len(files) + partitions, progress)
-        found = sum(steps.counted(_results(executor, _sort_file, job, len(files))))
+        sort = partial(_sort_file, job)
+        found = sum(rows for _, rows in steps.counted(run_tasks(sort, range(len(files)), executor)))
         job = replace(job, expected=found // partitions)
-        for part in steps.counted(_results(executor, _track_partition, job, partitions)):
+        track = partial(_track_partition, job)
+        for _, part in steps.counted(run_tasks(track, range(partitions), executor)):
             totals.merge(part)
         if not totals.tracks:
             raise DataError(f"{files[0]}: holds no rows, only column names")
@@ -161,7 +158,7 @@ class _Steps:
     """Tells how much of the work is done."""
 
     total: int
-    progress: Callable[[float], None] | None
+    progress: Progress | None
     done: int = 0
 
     def counted(self, parts: Iterable[Part]) -> Iterator[Part]:
@@ -222,36 +219,3 @@ def _track_partition(job: _Job, partition: int) -> Totals:
                 write(piece, tracked.outputs)
     totals.close(tracks)
     return totals
-
-
-def _results(
-    executor: Executor | None, task: Callable[[_Job, int], Part], job: _Job, count: int
-) -> Iterator[Part]:
-    """Results of a task for all numbers below `count`, as they finish."""
-    if executor is None:
-        for number in range(count):
-            yield task(job, number)
-        return
-    waiting = iter(range(count))
-    running: dict[Future[Part], tuple[int, int]] = {}
-    try:
-        while True:
-            for number in islice(waiting, _AHEAD - len(running)):
-                running[executor.submit(task, job, number)] = (number, 1)
-            if not running:
-                return
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                number, tries = running.pop(future)
-                try:
-                    part = future.result()
-                except (BrokenExecutor, ValueError):
-                    raise
-                except Exception:
-                    if tries == _TRIES:
-                        raise
-                    running[executor.submit(task, job, number)] = (number, tries + 1)
-                else:
-                    yield part
-    finally:
-        for future in running:
-            future.cancel()

@@ -18,6 +18,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.io.files import whole_file
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.version import __version__
 
 __all__ = ["ChunkStore"]
 
@@ -89,32 +90,30 @@ class ChunkStore:
             draft.write_text(json.dumps(job, indent=1) + "\n", encoding="utf-8")
         return cls(place, _digest(job))
 
-    def load(self, first: int, count: int) -> dict[str, Array] | None:
-        """Chunk of some runs, by the name of each array; None if there is no such chunk, whole."""
+    def load(self, runs: range) -> dict[str, Array] | None:
+        """Arrays of a chunk by name; None if there is no complete file of just these runs."""
         try:
             # Opened here: numpy leaves a file open that is no archive.
-            with self._path(first, count).open("rb") as file:
+            with self._path(runs).open("rb") as file:
                 arrays = dict(np.load(file, allow_pickle=False))
         except (OSError, EOFError, ValueError, zipfile.BadZipFile):
             return None
         mark = arrays.pop("mark", None)
         return arrays if mark is not None and str(mark) == self.mark else None
 
-    def save(self, first: int, count: int, arrays: Mapping[str, Array]) -> None:
+    def save(self, runs: range, arrays: Mapping[str, Array]) -> None:
         """Keep a chunk."""
-        with whole_file(self._path(first, count)) as draft, draft.open("wb") as file:
+        with whole_file(self._path(runs)) as draft, draft.open("wb") as file:
             np.savez(file, mark=np.array(self.mark), **arrays)  # type: ignore[arg-type]
 
-    def _path(self, first: int, count: int) -> Path:
-        return self.folder / f"runs-{first:09d}-{count}.npz"
+    def _path(self, runs: range) -> Path:
+        return self.folder / f"runs-{runs.start:09d}-{len(runs)}.npz"
 
 
 def _job(
     scenario: Scenario, trackers: Mapping[str, Tracker], seed: int, size: int
 ) -> dict[str, str]:
     """Everything that the numbers depend on, in words."""
-    from fuzzytrack import __version__
-
     job = {
         "fuzzytrack": __version__,
         "numpy": np.__version__,

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import operator
 import os
-from collections import Counter
 from collections.abc import Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import Executor
 from dataclasses import replace
-from itertools import islice
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.noise import Plots
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.starting import prepare_start
-from fuzzytrack.tasks import Progress
+from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.testbed.chunk_store import ChunkStore
 from fuzzytrack.testbed.results import Results, Sample
 from fuzzytrack.trackers.base import Tracker
@@ -27,18 +26,11 @@ from fuzzytrack.trackers.state import Gains
 
 __all__ = ["monte_carlo"]
 
-#: Called with the share of the runs that are done.
-
 # Coordinates a chunk may hold: a tracker makes about ten arrays of this many floats.
 _COORDINATES = 200_000
 # Runs a chunk may hold. In two axes, the lanes that compiled code takes at once; and a job of a few
 # hundred runs still keeps several cores busy.
 _RUNS = 124
-# Chunks given to an executor at a time, done or not: bounds what waits in memory.
-_AHEAD = 128
-# Times that an executor is given a chunk that fails. Dask's reports a finished chunk as failed if
-# its worker dies while the chunk is fetched.
-_TRIES = 3
 
 
 def monte_carlo(
@@ -125,7 +117,7 @@ def monte_carlo(
         raise ValueError("trackers: needs at least one")
     trackers = dict(trackers)
     size = _chunk_runs(scenario)
-    chunks = [(first, min(size, runs - first)) for first in range(0, runs, size)]
+    chunks = [range(first, min(first + size, runs)) for first in range(0, runs, size)]
     store = None
     if folder is not None:
         store = ChunkStore.open(folder, scenario, trackers, seed, size, resume=resume)
@@ -134,9 +126,9 @@ def monte_carlo(
 
     whole: dict[str, Array] = {}
     done = 0
-    for (first, count), part in _parts(scenario, trackers, seed, chunks, executor, store):
-        _put(whole, part, first, runs)
-        done += count
+    for chunk, part in _parts(scenario, trackers, seed, chunks, executor, store):
+        _put(whole, part, chunk.start, runs)
+        done += len(chunk)
         if progress is not None:
             progress(done / runs)
     sample = {name: whole.pop(name) for name in tuple(whole) if name.startswith("sample_")}
@@ -176,79 +168,38 @@ def _put(whole: dict[str, Array], part: dict[str, Array], first: int, runs: int)
 
 # -------------------------------------------------------------------- where chunks are run
 
-Chunk = tuple[int, int]
-
 
 def _parts(
     scenario: Scenario,
     trackers: dict[str, Tracker],
     seed: int,
-    chunks: list[Chunk],
+    chunks: list[range],
     executor: Executor | None,
     store: ChunkStore | None,
-) -> Iterator[tuple[Chunk, dict[str, Array]]]:
+) -> Iterator[tuple[range, dict[str, Array]]]:
     """All chunks, those that are stored first, the others as they finish."""
     missing = []
     for chunk in chunks:
-        stored = None if store is None else store.load(*chunk)
+        stored = None if store is None else store.load(chunk)
         if stored is None:
             missing.append(chunk)
         else:
             yield chunk, stored
     if executor is None:
-        coordinates = sum(count for _, count in missing) * len(scenario.time) * scenario.n_axes
+        coordinates = sum(map(len, missing)) * len(scenario.time) * scenario.n_axes
         for tracker in trackers.values():
             announce(tracker, scenario.n_axes, coordinates)
-    job = (scenario, trackers, seed)
-    for chunk, part in _here(job, missing) if executor is None else _on(executor, job, missing):
+    for chunk, part in run_tasks(partial(run_chunk, scenario, trackers, seed), missing, executor):
         if store is not None:
-            store.save(*chunk, part)
+            store.save(chunk, part)
         yield chunk, part
-
-
-Job = tuple[Scenario, dict[str, Tracker], int]
-
-
-def _here(job: Job, chunks: list[Chunk]) -> Iterator[tuple[Chunk, dict[str, Array]]]:
-    for chunk in chunks:
-        yield chunk, run_chunk(*job, *chunk)
-
-
-def _on(
-    executor: Executor, job: Job, chunks: list[Chunk]
-) -> Iterator[tuple[Chunk, dict[str, Array]]]:
-    waiting = iter(chunks)
-    running: dict[Future[dict[str, Array]], Chunk] = {}
-    failures: Counter[Chunk] = Counter()
-    try:
-        while True:
-            for chunk in islice(waiting, _AHEAD - len(running)):
-                running[executor.submit(run_chunk, *job, *chunk)] = chunk
-            if not running:
-                return
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                chunk = running.pop(future)
-                try:
-                    part = future.result()
-                except BrokenExecutor:
-                    raise
-                except Exception:
-                    failures[chunk] += 1
-                    if failures[chunk] == _TRIES:
-                        raise
-                    running[executor.submit(run_chunk, *job, *chunk)] = chunk
-                else:
-                    yield chunk, part
-    finally:
-        for future in running:
-            future.cancel()
 
 
 # -------------------------------------------------------------------- one chunk
 
 
 def run_chunk(
-    scenario: Scenario, trackers: Mapping[str, Tracker], seed: int, first: int, count: int
+    scenario: Scenario, trackers: Mapping[str, Tracker], seed: int, runs: range
 ) -> dict[str, Array]:
     """Errors of some of the runs.
 
@@ -256,8 +207,8 @@ def run_chunk(
     ----------
     scenario, trackers, seed
         As for `monte_carlo`.
-    first, count : int
-        The first run, and how many.
+    runs : range
+        Numbers of the runs, from 0.
 
     Returns
     -------
@@ -265,9 +216,9 @@ def run_chunk(
         Attributes of `Results` by name, for these runs; with run 0 those of `Sample` too, named
         ``sample_...``.
     """
-    # What SeedSequence(seed).spawn(runs) gives, without those before.
-    streams = [np.random.SeedSequence(seed, spawn_key=(k,)) for k in range(first, first + count)]
-    position, velocity = scenario.truth(first, count)
+    # What SeedSequence(seed).spawn gives for these runs.
+    streams = [np.random.SeedSequence(seed, spawn_key=(k,)) for k in runs]
+    position, velocity = scenario.truth(runs.start, len(runs))
     plots = scenario.sensors.measure(position, streams)
     if scenario.prepare_start:
         plots = _prepared(scenario.time, plots)
@@ -284,9 +235,9 @@ def run_chunk(
         if scenario.process_sigma is not None:
             nis, nees = _normalised(result, plots.sigma, true, scenario.process_sigma)
             part["nis"][k], part["nees"][k] = nis.T, nees.T
-        if first == 0:
+        if runs.start == 0:
             _keep(part, k, result)
-    if first == 0:
+    if runs.start == 0:
         part["sample_truth"] = np.array(true[:, 0])
         part["sample_plots"] = plots.z[:, 0].copy()
     else:

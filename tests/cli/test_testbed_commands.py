@@ -7,9 +7,9 @@ import sys
 import numpy as np
 import pytest
 
+from fuzzytrack import workers
 from fuzzytrack.cli import testbed as experimenting
 from fuzzytrack.io import read_tracks
-from fuzzytrack.recordings import workers
 from fuzzytrack.simulation.noise import streams
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -167,7 +167,7 @@ def test_lost_workers_are_one_line(fails, own, monkeypatch):
 
     monkeypatch.setattr(experimenting, "monte_carlo", broken)
     line = fails("testbed", own, "--trackers", TRACKERS, "--jobs", 2)
-    assert line.startswith("error: a worker process died")
+    assert line.startswith("error: --jobs: a worker process died")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
@@ -182,7 +182,7 @@ def test_interruption_says_how_to_go_on(tmp_path, options):
         "from fuzzytrack.testbed import montecarlo\n"
         "whole = montecarlo.run_chunk\n"
         "def part(*words):\n"
-        "    if words[-2]: signal.raise_signal(signal.SIGINT)\n"
+        "    if words[-1].start: signal.raise_signal(signal.SIGINT)\n"
         "    return whole(*words)\n"
         "montecarlo.run_chunk = part\n"
         f"sys.argv = {words!r}\n"

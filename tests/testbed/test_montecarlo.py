@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
@@ -207,70 +207,6 @@ def test_size_of_chunks():
     assert montecarlo._chunk_runs(Scenario("l", long, long[:, None], PlotNoise(1.0))) == 1
     long = long[:5000]
     assert montecarlo._chunk_runs(Scenario("l", long, long[:, None], PlotNoise(1.0))) == 40
-
-
-class LastFirst(Executor):
-    """Finishes the chunks in the wrong order, and tells how many it was given at a time."""
-
-    def __init__(self):
-        self.waiting, self.most = [], 0
-
-    def submit(self, function, /, *args):
-        future = Future()
-        finish = future.result
-
-        def result(timeout=None):
-            return finish(timeout)
-
-        future.result = result
-        self.waiting.append((future, function, args))
-        self.most = max(self.most, len(self.waiting))
-        return future
-
-    def work(self, *_args, **_kwargs):
-        future, function, args = self.waiting.pop()
-        future.set_result(function(*args))
-
-
-def test_any_order(monkeypatch):
-    one = monte_carlo(straight(), TRACKERS, 11, 3)
-    monkeypatch.setattr(montecarlo, "_RUNS", 2)
-    monkeypatch.setattr(montecarlo, "_AHEAD", 4)
-    executor, wait = LastFirst(), montecarlo.wait
-
-    def working_wait(futures, **how):
-        executor.work()
-        return wait(futures, **how)
-
-    monkeypatch.setattr(montecarlo, "wait", working_wait)
-    assert_same(one, monte_carlo(straight(), TRACKERS, 11, 3, executor=executor))
-    assert executor.most == 4
-
-
-class Forgetful(Executor):
-    """Loses the outcome of every chunk so many times."""
-
-    def __init__(self, times):
-        self.times, self.asked = times, []
-
-    def submit(self, function, /, *args):
-        self.asked.append(args[-2:])
-        future = Future()
-        if self.asked.count(args[-2:]) > self.times:
-            future.set_result(function(*args))
-        else:
-            future.set_exception(AttributeError("lost"))
-        return future
-
-
-def test_a_lost_chunk_is_run_again(monkeypatch):
-    one = monte_carlo(straight(), TRACKERS, 5, 3)
-    monkeypatch.setattr(montecarlo, "_RUNS", 2)
-    executor = Forgetful(2)
-    assert_same(one, monte_carlo(straight(), TRACKERS, 5, 3, executor=executor))
-    assert sorted(executor.asked) == sorted([(0, 2), (2, 2), (4, 1)] * 3)
-    with pytest.raises(AttributeError, match="lost"):
-        monte_carlo(straight(), TRACKERS, 5, 3, executor=Forgetful(3))
 
 
 def test_processes(monkeypatch, tmp_path):

@@ -1,4 +1,4 @@
-"""Who does the work of a long job: this process, others of this computer, or a cluster."""
+"""Executors for the tasks of a long job: processes of this computer, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _PATIENCE = 5
 
 @contextmanager
 def workers(jobs: int, scheduler: str | None) -> Iterator[Executor | None]:
-    """Executor of a job; it is closed at the end, and drops what has not begun.
+    """Executor for a job; closed at the end, with the tasks that have not begun canceled.
 
     Parameters
     ----------
     jobs : int
         Processes of this computer; no executor for 1.
     scheduler : str or None
-        Address of a Dask scheduler, which then does the work.
+        Address of a Dask scheduler, whose workers do the work instead.
 
     Yields
     ------
@@ -31,8 +31,11 @@ def workers(jobs: int, scheduler: str | None) -> Iterator[Executor | None]:
     Raises
     ------
     ValueError
-        If Dask is not installed, no scheduler answers, or workers are lost during the job.
+        If both are asked for, Dask is not installed, no scheduler answers, or workers are lost
+        during the job.
     """
+    if scheduler is not None and jobs > 1:
+        raise ValueError("jobs and scheduler: give one; a cluster has workers of its own")
     if scheduler is None and jobs == 1:
         yield None
         return
@@ -42,10 +45,10 @@ def workers(jobs: int, scheduler: str | None) -> Iterator[Executor | None]:
             yield executor
     except BrokenExecutor:
         raise ValueError(
-            "a worker process died, perhaps for want of memory; fewer --jobs?"
+            "jobs: a worker process died, perhaps for lack of memory; try fewer"
         ) from None
     except CancelledError:
-        raise ValueError(f"--scheduler: lost the Dask scheduler at {scheduler}") from None
+        raise ValueError(f"scheduler: lost the Dask scheduler at {scheduler}") from None
 
 
 @contextmanager
@@ -63,7 +66,7 @@ def _processes(jobs: int) -> Iterator[Executor]:
 
 
 def _leave_interrupts() -> None:
-    """Ctrl-C goes to all processes of a terminal; the first of them sees to it."""
+    """Ignore Ctrl-C, which goes to all processes of a terminal: the first one ends the job."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
@@ -74,14 +77,14 @@ def _cluster(address: str) -> Iterator[Executor]:
         from distributed.comm.addressing import resolve_address
     except ImportError:
         raise ValueError(
-            "--scheduler needs Dask, which is not installed; pip install 'fuzzytrack[dask]'"
+            "scheduler: needs Dask, which is not installed; pip install 'fuzzytrack[dask]'"
         ) from None
     try:
-        # A client that never had a valid address is noisy when it goes.
+        # A client that is given an invalid address logs errors when it is closed.
         resolve_address(address)
         client = Client(address, timeout=_PATIENCE, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         why = str(error).partition("\n")[0]
-        raise ValueError(f"--scheduler: no Dask scheduler answers at {address!r}: {why}") from None
+        raise ValueError(f"scheduler: no Dask scheduler answers at {address!r}: {why}") from None
     with client:
         yield client.get_executor()  # type: ignore[no-untyped-call]
