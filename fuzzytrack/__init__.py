@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from fuzzytrack.version import __version__
+
 # For type checkers and editors; at run time a name is imported when it is first used, so that
 # `import fuzzytrack` costs next to nothing, and a program pays for what it uses.
 if TYPE_CHECKING:
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
     from fuzzytrack.schedulers.reachable_gains import certify
     from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
-
-__version__ = "0.1.0"
 
 __all__ = [
     "AlphaBetaTracker",

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from fuzzytrack import __version__
-from fuzzytrack.cli.complaints import Commands
+from fuzzytrack.cli.complaints import Command, Commands
+from fuzzytrack.version import __version__
 
 __all__ = ["app"]
 
@@ -65,7 +65,7 @@ def load_command(name: str) -> Any:
     if isinstance(found, typer.Typer):
         return get_command(found)
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-    alone.command(name)(found)
+    alone.command(name, cls=Command)(found)
     return get_command(alone)
 
 

@@ -14,8 +14,10 @@ from fuzzytrack.cli import options
 from fuzzytrack.cli.output import plain, print_json, print_table, progress, say, show, with_error
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import whole_file
-from fuzzytrack.papers.reproduction import COST, PAPERS, Reproduction, part
-from fuzzytrack.papers.reproduction import reproduce as rebuild
+from fuzzytrack.papers.catalog import COST, PAPERS
+from fuzzytrack.papers.catalog import reproduce as rebuild
+from fuzzytrack.papers.reproduction import Reproduction
+from fuzzytrack.tasks import part
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["reproduce"]

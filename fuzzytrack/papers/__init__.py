@@ -3,6 +3,7 @@
 One module a paper, each with a function ``reproduce(runs, seed, progress)``; `PAPERS` names them.
 """
 
-from fuzzytrack.papers.reproduction import PAPERS, Reproduction, Row, reproduce
+from fuzzytrack.papers.catalog import PAPERS, reproduce
+from fuzzytrack.papers.reproduction import Reproduction, Row
 
 __all__ = ["PAPERS", "Reproduction", "Row", "reproduce"]

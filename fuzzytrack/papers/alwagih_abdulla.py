@@ -16,11 +16,12 @@ from fuzzytrack.papers.alwagih_abdulla_tables import (
     averages,
     table_rows,
 )
-from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
+from fuzzytrack.papers.reproduction import Reproduction, Row, row
 from fuzzytrack.schedulers import BenedictBordner, GrowingMemory, LinearCombination
 from fuzzytrack.simulation.noise import WHITE, Noise, streams
 from fuzzytrack.simulation.published import s3
 from fuzzytrack.simulation.scenario import PlotNoise, Scenario
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.design import kalata
-from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, part, row
+from fuzzytrack.papers.reproduction import Reproduction, Row, row
 from fuzzytrack.schedulers import FixedGains, InnovationScheduler
 from fuzzytrack.simulation.noise import streams
 from fuzzytrack.simulation.published import kim_lee, kim_lee_velocity
 from fuzzytrack.simulation.scenario import PlotNoise, Scenario
+from fuzzytrack.tasks import Progress, part
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker

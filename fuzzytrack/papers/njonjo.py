@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
+from fuzzytrack.papers.reproduction import Reproduction, Row, row
 from fuzzytrack.schedulers import FadingMemory, GainScheduler
 from fuzzytrack.schedulers.base import Kernel, Memory
 from fuzzytrack.simulation.published import warship
 from fuzzytrack.simulation.scenario import PlotNoise, Scenario
+from fuzzytrack.tasks import Progress
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 

@@ -2,32 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from fuzzytrack.tasks import Progress
-
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["COST", "PAPERS", "Progress", "Reproduction", "Row", "part", "reproduce", "row"]
-
-#: Called with the share of the work that is done.
-
-#: Papers by name, and the modules that rebuild their experiments.
-PAPERS = {
-    "alwagih-abdulla": "alwagih_abdulla",
-    "kim-lee": "kim_lee",
-    "llinas": "llinas",
-    "njonjo": "njonjo",
-    "zhang-jiang": "zhang_jiang",
-}
-
-#: About how long each takes, beside the others.
-COST = {"alwagih-abdulla": 5, "kim-lee": 1, "llinas": 8, "njonjo": 9, "zhang-jiang": 0.1}
+__all__ = ["Reproduction", "Row", "row"]
 
 MATCHES, DIFFERS, NOT_STATED = "matches", "differs", "not stated"
 
@@ -103,7 +86,7 @@ class Reproduction:
     Attributes
     ----------
     paper : str
-        Name, one of `PAPERS`.
+        Name, one of `fuzzytrack.papers.PAPERS`.
     title : str
         Authors, year and subject.
     rows : tuple of Row
@@ -162,46 +145,3 @@ class Reproduction:
             "notes": list(self.notes),
             "rows": [asdict(r) for r in self.rows],
         }
-
-
-def reproduce(
-    name: str, runs: int | None = None, seed: int = 0, progress: Progress | None = None
-) -> Reproduction:
-    """Rebuild the experiments of a paper.
-
-    Parameters
-    ----------
-    name : str
-        One of `PAPERS`.
-    runs : int, optional
-        Monte Carlo runs of each experiment; as many as the paper's unless given.
-    seed : int
-        Seed of the noise.
-    progress : callable, optional
-        Called with the share of the work that is done.
-
-    Returns
-    -------
-    Reproduction
-
-    Raises
-    ------
-    ValueError
-        If there is no such paper, or a number is out of range.
-    """
-    if name not in PAPERS:
-        raise ValueError(f"name: unknown paper {name!r}; one of {', '.join(PAPERS)}")
-    if runs is not None and runs < 1:
-        raise ValueError(f"runs must be at least 1, got {runs}")
-    if seed < 0:
-        raise ValueError(f"seed must not be negative, got {seed}")
-    module = importlib.import_module(f"fuzzytrack.papers.{PAPERS[name]}")
-    found: Reproduction = module.reproduce(
-        module.RUNS if runs is None else runs, seed, progress or (lambda share: None)
-    )
-    return found
-
-
-def part(progress: Progress, low: float, high: float) -> Progress:
-    """Progress of one part of the work, from the share `low` to `high` of all of it."""
-    return lambda share: progress(low + (high - low) * share)

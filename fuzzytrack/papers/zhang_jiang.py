@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import within
 from fuzzytrack.gains.design import quality
-from fuzzytrack.papers.reproduction import Progress, Reproduction, Row, row
+from fuzzytrack.papers.reproduction import Reproduction, Row, row
+from fuzzytrack.tasks import Progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,12 +12,12 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
-from fuzzytrack import __version__
 from fuzzytrack.arrays import Array
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.reports.pictures import CAPTIONS, LEVEL, report_pictures
 from fuzzytrack.testbed.metrics import PairedDifference
 from fuzzytrack.testbed.results import Results
+from fuzzytrack.version import __version__
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

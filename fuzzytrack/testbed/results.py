@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import number, positive
-from fuzzytrack.testbed import metrics
+from fuzzytrack.testbed import metrics, results_as
 from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
 
 if TYPE_CHECKING:
@@ -324,22 +324,98 @@ class Results:
     # ---------------------------------------------------------------- in other forms
 
     def table(self) -> list[dict[str, Any]]:
-        """What there is to say of each tracker, a row each; see `fuzzytrack.testbed.results_as`."""
-        from fuzzytrack.testbed.results_as import table
+        """Summary of each tracker, a row each, in plain numbers.
 
-        return table(self)
+        Returns
+        -------
+        list of dict
+            ``name``; ``unstarted_runs``; for each quantity (``predicted``, ``filtered``, and
+            ``velocity`` if it is known) ``predicted_mean``, ``predicted_mean_se``,
+            ``predicted_variance``, ``predicted_rmse``, ``predicted_rmse_se``; of predictions
+            ``cumulative``, ``cumulative_se``, ``peak``, ``peak_scan`` (from 0, None if there is
+            none), ``peak_time``; ``change``, ``change_se``, ``change_low``, ``change_high``: mean
+            difference of a run's RMSE of prediction to the first tracker's, with its standard error
+            and 95 % interval (None for the first); and ``nis``, ``nis_expected``, ``nis_low``,
+            ``nis_high``, the same of ``nees``, if they are known. NaN where nothing counts.
+        """
+        columns: dict[str, list[Any]] = {
+            "name": list(self.names),
+            "unstarted_runs": self.unstarted_runs.tolist(),
+        }
+        for quantity in self._known():
+            columns[f"{quantity}_mean"] = self.mean_error(quantity).tolist()
+            columns[f"{quantity}_mean_se"] = self.mean_error_se(quantity).tolist()
+            columns[f"{quantity}_variance"] = self.error_variance(quantity).tolist()
+            columns[f"{quantity}_rmse"] = self.rmse(quantity).tolist()
+            columns[f"{quantity}_rmse_se"] = self.rmse_se(quantity).tolist()
+        columns["cumulative"] = self.cumulative().tolist()
+        columns["cumulative_se"] = self.cumulative_se().tolist()
+        peak = self.peak()
+        scans = peak.scan.tolist()
+        columns["peak"] = peak.value.tolist()
+        columns["peak_scan"] = [None if scan < 0 else scan for scan in scans]
+        columns["peak_time"] = [None if scan < 0 else float(self.time[scan]) for scan in scans]
+        first, *others = self.names
+        changes = [self.paired_difference(first, name) for name in others]
+        columns["change"] = [None, *(each.difference for each in changes)]
+        columns["change_se"] = [None, *(each.standard_error for each in changes)]
+        columns["change_low"] = [None, *(each.low for each in changes)]
+        columns["change_high"] = [None, *(each.high for each in changes)]
+        for name, found in self._consistencies():
+            columns[name] = found.mean.tolist()
+            columns[f"{name}_expected"] = found.expected.tolist()
+            columns[f"{name}_low"] = found.low.tolist()
+            columns[f"{name}_high"] = found.high.tolist()
+        return results_as.rows(columns)
 
     def to_json_dict(self) -> dict[str, Any]:
-        """Summary and curves in plain types, for JSON; see `fuzzytrack.testbed.results_as`."""
-        from fuzzytrack.testbed.results_as import json_dict
+        """Summary and curves in plain types, for JSON.
 
-        return json_dict(self)
+        Returns
+        -------
+        dict
+            ``fuzzytrack`` (version), ``scenario``, ``seed``, ``runs``, ``empty_runs``,
+            ``first_scored``, ``measured_rmse``, ``trackers`` (the rows of `table`), ``time``, and
+            ``curves``: for each tracker by name its columns of `to_pandas`. None where a number is
+            not finite, since JSON has no NaN.
+        """
+        facts = ("scenario", "seed", "runs", "empty_runs", "first_scored", "measured_rmse")
+        return results_as.json_dict(
+            {name: getattr(self, name) for name in facts}, self.table(), self.time, self._curves()
+        )
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Curves as a table, a row a tracker and scan; see `fuzzytrack.testbed.results_as`."""
-        from fuzzytrack.testbed.results_as import data_frame
+        """Curves as a table, a row a tracker and scan.
 
-        return data_frame(self)
+        Returns
+        -------
+        pandas.DataFrame
+            Columns ``tracker``, ``scan`` (from 0), ``time``, and for each quantity that is known
+            ``predicted_rmse``, ``predicted_rmse_se``, ``predicted_median`` and so on; ``nis`` and
+            ``nees``, the means over runs, if they are known.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        return results_as.data_frame(self.names, self.time, self._curves())
+
+    def _known(self) -> list[Quantity]:
+        return [name for name in QUANTITIES if getattr(self, name) is not None]
+
+    def _consistencies(self) -> list[tuple[str, Consistency]]:
+        found = (("nis", self.nis_consistency()), ("nees", self.nees_consistency()))
+        return [(name, each) for name, each in found if each is not None]
+
+    def _curves(self) -> dict[str, Array]:
+        """Curves over the scans, each of shape (n_trackers, n_steps)."""
+        curves = {}
+        for quantity in self._known():
+            curves[f"{quantity}_rmse"] = self.rmse_per_scan(quantity)
+            curves[f"{quantity}_rmse_se"] = self.rmse_per_scan_se(quantity)
+            curves[f"{quantity}_median"] = self.quantiles(0.5, quantity)
+        return curves | {name: found.scan_mean for name, found in self._consistencies()}
 
     def _errors(self, quantity: Quantity) -> Array:
         if quantity not in QUANTITIES:

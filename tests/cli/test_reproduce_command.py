@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from fuzzytrack.papers import reproduction
+from fuzzytrack.papers import catalog
 
 
 def test_a_table_of_published_and_own_numbers(run):
@@ -65,7 +65,7 @@ def test_the_folder_must_be_one(fails, tmp_path):
 
 def test_runs_and_seed_reach_the_paper(run, monkeypatch):
     asked = []
-    original = reproduction.reproduce
+    original = catalog.reproduce
 
     def noted(name, runs, seed, progress):
         asked.append((name, runs, seed))

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from fuzzytrack.papers import PAPERS, Reproduction, Row, reproduce
-from fuzzytrack.papers.reproduction import part, row
+from fuzzytrack.papers.reproduction import row
 
 
 @pytest.mark.parametrize(
@@ -47,12 +47,6 @@ def test_json_has_the_rows():
         }
     ]  # fmt: skip
     assert (text["paper"], text["notes"]) == ("p", ["a note"])
-
-
-def test_a_part_of_the_work_reports_its_share():
-    seen = []
-    part(seen.append, 0.5, 0.75)(0.5)
-    assert seen == [0.625]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.papers.llinas.sampling import PUBLISHED, SIGMA, linear_mean_error
 from fuzzytrack.papers.llinas.theory import rule_bases
-from fuzzytrack.papers.reproduction import Progress, Row, part, row
+from fuzzytrack.papers.reproduction import Row, row
 from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, KalmanCV
 from fuzzytrack.simulation.noise import streams
 from fuzzytrack.simulation.published import MANEUVERS, llinas_maneuver
@@ -18,6 +18,7 @@ from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario
 from fuzzytrack.simulation.sensor_field import SPACINGS, canonical_field
 from fuzzytrack.simulation.starting import prepare_start
 from fuzzytrack.simulation.trajectories import constant_acceleration, turn_with_angular_acceleration
+from fuzzytrack.tasks import Progress, part
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker

@@ -1,4 +1,4 @@
-"""Llinas, Singh, Chen & Tenne (1998): a fuzzy α-β tracker beside four others in a sensor field."""
+"""The experiments of the report together: all rows, the notes and the pictures."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.papers.llinas import field, sampling, theory
-from fuzzytrack.papers.reproduction import Progress, Reproduction, part
+from fuzzytrack.papers.reproduction import Reproduction
 from fuzzytrack.simulation.published import MANEUVERS
+from fuzzytrack.tasks import Progress, part
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.state import Gains
 

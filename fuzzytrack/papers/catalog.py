@@ -1,0 +1,60 @@
+"""Papers by name, and the call that rebuilds the experiments of one."""
+
+from __future__ import annotations
+
+import importlib
+
+from fuzzytrack.papers.reproduction import Reproduction
+from fuzzytrack.tasks import Progress
+
+__all__ = ["COST", "PAPERS", "reproduce"]
+
+#: Papers by name, and the modules that rebuild their experiments.
+PAPERS = {
+    "alwagih-abdulla": "alwagih_abdulla",
+    "kim-lee": "kim_lee",
+    "llinas": "llinas.reproduction",
+    "njonjo": "njonjo",
+    "zhang-jiang": "zhang_jiang",
+}
+
+#: About how long each takes, beside the others.
+COST = {"alwagih-abdulla": 5, "kim-lee": 1, "llinas": 8, "njonjo": 9, "zhang-jiang": 0.1}
+
+
+def reproduce(
+    name: str, runs: int | None = None, seed: int = 0, progress: Progress | None = None
+) -> Reproduction:
+    """Rebuild the experiments of a paper.
+
+    Parameters
+    ----------
+    name : str
+        One of `PAPERS`.
+    runs : int, optional
+        Monte Carlo runs of each experiment; as many as the paper's unless given.
+    seed : int
+        Seed of the noise.
+    progress : callable, optional
+        Called with the share of the work that is done.
+
+    Returns
+    -------
+    Reproduction
+
+    Raises
+    ------
+    ValueError
+        If there is no such paper, or a number is out of range.
+    """
+    if name not in PAPERS:
+        raise ValueError(f"name: unknown paper {name!r}; one of {', '.join(PAPERS)}")
+    if runs is not None and runs < 1:
+        raise ValueError(f"runs must be at least 1, got {runs}")
+    if seed < 0:
+        raise ValueError(f"seed must not be negative, got {seed}")
+    module = importlib.import_module(f"fuzzytrack.papers.{PAPERS[name]}")
+    found: Reproduction = module.reproduce(
+        module.RUNS if runs is None else runs, seed, progress or (lambda share: None)
+    )
+    return found
