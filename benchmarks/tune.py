@@ -1,4 +1,4 @@
-"""Tune the families of `fuzzytrack.tuning.ranking`, and print what the gallery measures.
+"""Tune the families of `fuzzytrack.tuning`, and print what the gallery measures.
 
 The numbers go into examples/plot_17_ranking.py. It takes about an hour.
 """
@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from fuzzytrack.simulation.published import TRACK_SETS, track_set
-from fuzzytrack.tuning.ranking import FAMILIES, tune
+from fuzzytrack.tuning import FAMILIES, tune
 
 TRACKS, SEED = 120, 1
 

@@ -15,7 +15,7 @@ not know its targets can have.
 # The numbers that ``benchmarks/tune.py`` found.
 from matplotlib import pyplot as plt
 
-from fuzzytrack.tuning.ranking import FAMILIES, rank
+from fuzzytrack.tuning import FAMILIES, rank
 
 TUNED = {
     "fixed α-β, published": {},

@@ -1,5 +1,11 @@
-"""Trackers tuned on sets of tracks, and ranked."""
+"""Trackers tuned on sets of tracks, and ranked.
 
-from fuzzytrack.tuning.ranking import FAMILIES, rank, tune
+A tracker with parameters can only be judged when they are tuned: `tune` finds them, and `rank`
+measures tuned trackers on fresh tracks.
+"""
 
-__all__ = ["FAMILIES", "rank", "tune"]
+from fuzzytrack.tuning.families import FAMILIES, Family
+from fuzzytrack.tuning.ranking import Ranked, rank
+from fuzzytrack.tuning.search import tune
+
+__all__ = ["FAMILIES", "Family", "Ranked", "rank", "tune"]
