@@ -9,6 +9,7 @@ __all__ = [
     "FileError",
     "Location",
     "NoRuleFiresWarning",
+    "PluginError",
     "PluginWarning",
     "RuleBaseError",
     "ScenarioError",
@@ -76,6 +77,10 @@ class ScenarioError(FileError):
     """A scenario of a simulation that cannot be used."""
 
 
+class PluginError(FileError):
+    """A script of plug-ins that cannot be loaded."""
+
+
 class DataError(ValueError):
     """A data file or measurement array that cannot be tracked; names row and column."""
 
@@ -85,4 +90,4 @@ class NoRuleFiresWarning(UserWarning):
 
 
 class PluginWarning(UserWarning):
-    """A plug-in could not be loaded and was skipped."""
+    """A plug-in was skipped: it could not be loaded, or its name is taken."""

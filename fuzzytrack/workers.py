@@ -6,6 +6,9 @@ import signal
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor
 from contextlib import contextmanager
+from functools import partial
+
+from fuzzytrack.plugins.scripts import Script, load_scripts, loaded_scripts
 
 __all__ = ["workers"]
 
@@ -57,7 +60,10 @@ def _processes(jobs: int) -> Iterator[Executor]:
     from concurrent.futures import ProcessPoolExecutor
 
     pool = ProcessPoolExecutor(
-        jobs, multiprocessing.get_context("spawn"), initializer=_leave_interrupts
+        jobs,
+        multiprocessing.get_context("spawn"),
+        initializer=_begin,
+        initargs=(loaded_scripts(),),
     )
     try:
         yield pool
@@ -65,9 +71,11 @@ def _processes(jobs: int) -> Iterator[Executor]:
         pool.shutdown(cancel_futures=True)
 
 
-def _leave_interrupts() -> None:
-    """Ignore Ctrl-C, which goes to all processes of a terminal: the first one ends the job."""
+def _begin(scripts: tuple[Script, ...]) -> None:
+    """Begin the work of a process, with the plug-ins that the first process has."""
+    # Ctrl-C goes to all processes of a terminal: the first one ends the job.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    load_scripts(scripts)
 
 
 @contextmanager
@@ -87,4 +95,7 @@ def _cluster(address: str) -> Iterator[Executor]:
         why = str(error).partition("\n")[0]
         raise ValueError(f"scheduler: no Dask scheduler answers at {address!r}: {why}") from None
     with client:
+        # Also on workers that join later.
+        if scripts := loaded_scripts():
+            client.register_worker_callbacks(partial(load_scripts, scripts))  # type: ignore[no-untyped-call]
         yield client.get_executor()  # type: ignore[no-untyped-call]

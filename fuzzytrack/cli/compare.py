@@ -34,6 +34,7 @@ def compare(
     id: options.Id = None,
     axes: options.Axes = None,
     sort: options.Sort = False,
+    plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
     """Compare trackers on a true track with simulated noise.
@@ -43,6 +44,7 @@ def compare(
     """
     if not 0 < noise < math.inf:
         raise ValueError(f"--noise must be > 0, got {noise:g}")
+    options.load_plugins(plugin)
     chosen = trackers_named(trackers)
     recording = read(file, time, id, axes, sort)
     tracks = [(track.time, track.plots) for track in recording.tracks]

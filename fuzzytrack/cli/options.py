@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from fuzzytrack.plugins.scripts import load_script
 from fuzzytrack.yamltree import suggestion
 
 __all__ = [
@@ -14,11 +15,13 @@ __all__ = [
     "Id",
     "Json",
     "Plots",
+    "Plugins",
     "Scenario",
     "ScenarioOrNone",
     "Seed",
     "Sort",
     "Time",
+    "load_plugins",
     "names",
     "numbers_at",
     "pairs",
@@ -42,6 +45,18 @@ _SCENARIO = typer.Argument(metavar="SCENARIO", help="Name of a shipped scenario,
 Scenario = Annotated[str, _SCENARIO]
 ScenarioOrNone = Annotated[str | None, _SCENARIO]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Plugins = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plugin", metavar="FILE.py", help="Load plug-ins from a script; may be repeated."
+    ),
+]
+
+
+def load_plugins(files: Iterable[str] | None) -> None:
+    """Load the scripts that follow ``--plugin``."""
+    for file in files or ():
+        load_script(file)
 
 
 def names(text: str, option: str) -> list[str]:

@@ -70,11 +70,13 @@ def show(name: Name, json: options.Json = False) -> None:
 @rulebase.command()
 def check(
     files: Annotated[list[str], typer.Argument(metavar="FILE...", help="Files, or names.")],
+    plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
     """Check rule bases: what is right, or the place of the first mistake."""
     from fuzzytrack.schedulers.review import review
 
+    options.load_plugins(plugin)
     reviews: list[dict[str, Any]] = []
     wrong = False
     for file in files:

@@ -30,11 +30,13 @@ def simulate(
     truth: Annotated[
         bool, typer.Option("--truth", help="The true positions alone, without sensors.")
     ] = False,
+    plugin: options.Plugins = None,
 ) -> None:
     """Write the plots of a simulated target, beside the truth.
 
     The plots are those that `fuzzytrack testbed` makes with the same seed.
     """
+    options.load_plugins(plugin)
     path = str(scenario_path(scenario))
     table_writer(output)
     check_output(output, (path,))

@@ -49,6 +49,7 @@ def experiment(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with what the folder holds already.")
     ] = False,
+    plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
     """Run trackers on many random draws of a scenario.
@@ -61,6 +62,7 @@ def experiment(
         return
     if resume and output is None:
         raise ValueError("--resume needs -o DIR, the folder of the job to go on with")
+    options.load_plugins(plugin)
     drawn = load_scenario(scenario)
     chosen = _chosen(trackers, drawn)
     try:

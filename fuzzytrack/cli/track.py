@@ -79,6 +79,7 @@ def track(
     partitions: Annotated[
         int, typer.Option(min=1, metavar="P", help="Tasks and files that tracks are divided among.")
     ] = 16,
+    plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
     """Track the plots of a file, or of a folder of files in order of their names.
@@ -88,6 +89,7 @@ def track(
     """
     if sigma is not None and not 0 < sigma < math.inf:
         raise ValueError(f"--sigma must be > 0, got {sigma:g}")
+    options.load_plugins(plugin)
     chosen = make_tracker(tracker)
     apart = scheduler is not None or jobs > 1
     if (

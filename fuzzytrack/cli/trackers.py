@@ -11,8 +11,9 @@ from fuzzytrack.trackers.catalog import CatalogEntry, catalog
 __all__ = ["trackers"]
 
 
-def trackers(json: options.Json = False) -> None:
+def trackers(plugin: options.Plugins = None, json: options.Json = False) -> None:
     """List what there is to track with, with its source; plug-ins included."""
+    options.load_plugins(plugin)
     entries = catalog()
     if json:
         print_json([asdict(entry) for entry in entries])
@@ -29,7 +30,7 @@ def trackers(json: options.Json = False) -> None:
 
 
 def _origin(source: str, package: str) -> str:
-    return source if package == "fuzzytrack" else f"{source} (package {package})".strip()
+    return source if package == "fuzzytrack" else f"{source} (from {package})".strip()
 
 
 def _alike(entries: tuple[CatalogEntry, ...]) -> dict[tuple[str, ...], tuple[str, ...]]:

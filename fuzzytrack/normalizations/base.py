@@ -62,5 +62,5 @@ class Normalization(ABC):
 
 
 normalizations: Registry[type[Normalization]] = Registry(
-    "normalization", "fuzzytrack.normalizations"
+    "normalization", "fuzzytrack.normalizations", Normalization
 )

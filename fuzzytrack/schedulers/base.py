@@ -85,4 +85,6 @@ class GainScheduler(ABC):
         return ()
 
 
-schedulers: Registry[type[GainScheduler]] = Registry("scheduler", "fuzzytrack.schedulers")
+schedulers: Registry[type[GainScheduler]] = Registry(
+    "scheduler", "fuzzytrack.schedulers", GainScheduler
+)

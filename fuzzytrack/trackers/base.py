@@ -33,4 +33,4 @@ class Tracker(Protocol):
         ...
 
 
-trackers: Registry[Callable[..., Tracker]] = Registry("tracker", "fuzzytrack.trackers")
+trackers: Registry[Callable[..., Tracker]] = Registry("tracker", "fuzzytrack.trackers", Tracker)

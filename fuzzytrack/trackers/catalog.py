@@ -6,15 +6,18 @@ import inspect
 import re
 import types
 import typing
+import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.errors import PluginWarning, RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.normalizations import normalizations
+from fuzzytrack.plugins import Registry
 from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, schedulers
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
@@ -41,7 +44,7 @@ class CatalogEntry:
     source : str
         Paper, or other origin.
     package : str
-        Package that brings it.
+        Package that brings it; of a script, its file.
     """
 
     kind: str
@@ -60,11 +63,15 @@ def catalog() -> tuple[CatalogEntry, ...]:
         for rules in map(load_rulebase, _scheduling())
     ]
     for plugin in schedulers:
+        if _kind(plugin.name) != "scheduler":
+            continue
         own = _spelt(_parameters(plugin.factory))
         entries.append(
             CatalogEntry("scheduler", plugin.name, (*own, *start), plugin.source, plugin.package)
         )
     for plugin in trackers:
+        if _kind(plugin.name) != "tracker":
+            continue
         own = _spelt(_parameters(plugin.factory))
         entries.append(CatalogEntry("tracker", plugin.name, own, plugin.source, plugin.package))
     for plugin in normalizations:
@@ -120,7 +127,7 @@ def make_tracker(spec: str) -> Tracker:
 def _make(name: str, options: dict[str, str]) -> Any:
     if not name:
         raise ValueError("a name is missing; for example stiffness-damping")
-    if name not in trackers.names():
+    if _kind(name) != "tracker":
         scheduler = _make_scheduler(name, options, _start_parameters())
         return _call(AlphaBetaTracker, options, {"scheduler": scheduler})
     factory = trackers.get(name)
@@ -132,11 +139,11 @@ def _make_scheduler(
     name: str, options: dict[str, str], others: Mapping[str, inspect.Parameter] | None = None
 ) -> GainScheduler:
     """Scheduler by name or file, out of its own options, which are taken from `options`."""
-    if name.lower().endswith(_FILE) or name in shipped_rulebases():
+    if name.lower().endswith(_FILE) or _kind(name) == "rule base":
         factory: Callable[..., Any] = FuzzyScheduler
         is_file = name.lower().endswith(_FILE)
         given: dict[str, Any] = {"rules": load_rulebase(Path(name) if is_file else name)}
-    elif name in schedulers.names():
+    elif _kind(name) == "scheduler":
         factory, given = schedulers.get(name), {}
     else:
         raise ValueError(
@@ -197,6 +204,29 @@ def _split(spec: str) -> tuple[str, dict[str, str]]:
 def _scheduling() -> tuple[str, ...]:
     """Shipped rule bases that schedule gains."""
     return tuple(name for name in shipped_rulebases() if load_rulebase(name).scheduler)
+
+
+def _kind(name: str) -> str | None:
+    """What a name stands for; no plug-in can take the name of something built in."""
+    registries: dict[str, Registry[Any]] = {"scheduler": schedulers, "tracker": trackers}
+    kinds = [kind for kind, registry in registries.items() if name in registry.names()]
+    # What is built in first, otherwise in this order.
+    kinds.sort(key=lambda kind: name not in registries[kind].built_in())
+    if name in shipped_rulebases():
+        kinds.insert(0, "rule base")
+    for hidden in kinds[1:]:
+        _report(hidden, name, registries[hidden].package(name), kinds[0])
+    return kinds[0] if kinds else None
+
+
+@cache
+def _report(kind: str, name: str, package: str, taken_by: str) -> None:
+    """Warn, once, of a plug-in that cannot be named."""
+    warnings.warn(
+        f"{kind} {name!r} of {package} has the name of a {taken_by}; it is skipped",
+        PluginWarning,
+        stacklevel=4,
+    )
 
 
 def _names() -> tuple[str, ...]:

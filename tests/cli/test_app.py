@@ -86,7 +86,7 @@ def test_trackers(run):
 def test_plugins_name_their_package(run, monkeypatch):
     entry = CatalogEntry("scheduler", "mine", (), "my paper", "my-package")
     monkeypatch.setattr(listing, "catalog", lambda: (entry,))
-    assert "my paper (package my-package)" in run("trackers").stdout
+    assert "my paper (from my-package)" in run("trackers").stdout
 
 
 def test_warnings_are_one_line_on_stderr(run, monkeypatch):

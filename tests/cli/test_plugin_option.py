@@ -1,0 +1,132 @@
+"""``--plugin FILE.py``, on its own and with other processes and computers at work."""
+
+import json
+
+import pytest
+
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.schedulers import schedulers
+
+SCRIPT = """
+from dataclasses import dataclass
+
+from fuzzytrack.normalizations import Normalization, normalizations
+from fuzzytrack.schedulers import GainScheduler, schedulers
+
+
+@schedulers.register("scripted")
+@dataclass(frozen=True)
+class Scripted(GainScheduler):
+    uses_acceleration = False
+    alpha: float = 0.5
+
+    def kernel(self, n_axes):
+        alpha = self.alpha
+
+        def scripted(innovation, change, dt, sigma, memory):
+            return alpha, 0.2, 0.0, 1.0, memory
+
+        return scripted
+
+
+@normalizations.register("scripted")
+@dataclass(frozen=True)
+class Halved(Normalization):
+    signals = ("half the error", "nothing")
+
+    def initial_memory(self, n_axes):
+        return ()
+
+    def kernel(self, n_axes):
+        def halved(innovation, change, dt, sigma, memory):
+            return (max(-1.0, min(1.0, 0.5 * innovation)), 0.0), memory
+
+        return halved
+"""
+
+
+@pytest.fixture
+def script(csv):
+    """A script with a scheduler and a normalization, both called "scripted"."""
+    yield csv(SCRIPT, "mine.py")
+    for registry in (schedulers, normalizations):
+        if "scripted" in registry.names():
+            registry.unregister("scripted")
+
+
+def numbers(result):
+    """Numbers that a command prints as JSON, without the names of what was asked for."""
+    assert (result.exit_code, result.stderr) == (0, "")
+    found = json.loads(result.stdout)
+    return found.get("total") or [
+        {key: value for key, value in row.items() if key != "name"} for row in found["trackers"]
+    ]
+
+
+def test_track_with_a_scheduler_of_a_script(run, plots, script):
+    words = ("track", plots, "--json", "--tracker")
+    again = script.parent / "." / "mine.py"
+    mine = run(*words, "scripted:alpha=0.3", "--plugin", script, "--plugin", again)
+    assert numbers(mine) == numbers(run(*words, "fixed:alpha=0.3:beta=0.2"))
+
+
+def test_compare_and_trackers(run, plots, script, csv):
+    truth = csv("t,x\n0,0\n1,10\n2,20\n3,31\n4,44\n", "truth.csv")
+    chosen = ("--trackers", "scripted,fixed:alpha=.5:beta=.2", "--plugin", script)
+    one, other = numbers(run("compare", truth, "--noise", 2, "--runs", 3, "--json", *chosen))
+    assert one == other
+    listed = {row["name"]: row for row in json.loads(
+        run("trackers", "--plugin", script, "--json").stdout
+    )}  # fmt: skip
+    assert listed["scripted"]["package"] == str(script)
+
+
+def test_a_rule_base_on_a_normalization_of_a_script(run, fails, csv, script):
+    from fuzzytrack.fuzzy.loading import rulebase_path
+
+    text = rulebase_path("stiffness-damping").read_text()
+    rules = csv(text.replace("normalization: chan", "normalization: scripted"), "mine.yaml")
+    assert run("rulebase", "check", rules, "--plugin", script).exit_code == 0
+    normalizations.unregister("scripted")
+    assert "unknown normalization 'scripted'" in run("rulebase", "check", rules).stderr
+
+
+def test_processes_know_the_script(run, script):
+    words = ("testbed", "constant-velocity", "--runs", 130, "--json", "--trackers")
+    mine = run(*words, "scripted:alpha=0.4", "--plugin", script, "--jobs", 2)
+    assert numbers(mine) == numbers(run(*words, "fixed:alpha=0.4:beta=0.2"))
+
+
+def test_a_cluster_knows_the_script(run, script):
+    distributed = pytest.importorskip("distributed")
+    words = ("testbed", "constant-velocity", "--runs", 5, "--json", "--trackers")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"
+    ) as cluster:
+        address = cluster.scheduler_address
+        mine = run(*words, "scripted:alpha=0.4", "--plugin", script, "--scheduler", address)
+    assert numbers(mine) == numbers(run(*words, "fixed:alpha=0.4:beta=0.2"))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("track", "plots.csv"),
+        ("compare", "plots.csv", "--noise", "1"),
+        ("testbed", "mixed"),
+        ("simulate", "mixed", "-o", "out.csv"),
+        ("trackers",),
+        ("rulebase", "check", "chan-style"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_mistake_in_a_script_is_one_line(fails, csv, words):
+    path = csv("import math\n\nmath.no_such_function(1)\n", "mine.py")
+    assert fails(*words, "--plugin", path) == (
+        f"{path}:3:1: AttributeError: module 'math' has no attribute 'no_such_function'"
+    )
+
+
+def test_a_script_that_is_not_there(fails, plots, tmp_path):
+    path = tmp_path / "none.py"
+    assert fails("track", plots, "--plugin", path) == f"error: {path}: No such file or directory"
