@@ -243,6 +243,14 @@ def test_another_process_gets_the_text_of_a_script(script):
     assert again.__module__ == made.__module__ == loaded.module
 
 
+def test_the_later_of_two_scripts_with_a_name_counts(script):
+    load_script(script(SCRIPT))
+    later = script(SCRIPT.replace("a script", "another"), "later.py")
+    with pytest.warns(PluginWarning, match=r"'scripted' of .*later.py replaces that of .*mine.py"):
+        load_script(later)
+    assert schedulers.get("scripted").source == "another"
+
+
 @pytest.mark.parametrize(
     ("text", "place", "message"),
     [

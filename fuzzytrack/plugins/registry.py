@@ -91,18 +91,22 @@ class Registry(Generic[T]):
             If the factory makes nothing of this kind.
         ValueError
             If the name is taken by another factory. A class of the same module and name, defined
-            again, takes the place of the earlier one.
+            again, takes the place of the earlier one; so does one of another script, with a
+            `PluginWarning`.
         """
 
         def decorate(factory: T) -> T:
             self._check(name, factory)
             taken = self._local.get(name)
+            plugin = Plugin(name, factory, _script(factory) or _module(factory).partition(".")[0])
             if taken is not None and not _same(taken.factory, factory):
-                raise ValueError(
-                    f"{self.kind} {name!r} is already registered by {taken.package}; choose "
-                    "another name"
-                )
-            self._local[name] = Plugin(name, factory, _origin(factory))
+                if not (_script(factory) and _script(taken.factory)):
+                    raise ValueError(
+                        f"{self.kind} {name!r} is already registered by {taken.package}; choose "
+                        "another name"
+                    )
+                _warn(f"{self.kind} {name!r} of {plugin.package} replaces that of {taken.package}")
+            self._local[name] = plugin
             return factory
 
         return decorate
@@ -196,14 +200,16 @@ def _same(one: Any, other: Any) -> bool:
     return one is other or all(getattr(one, n, one) == getattr(other, n, other) for n in names)
 
 
-def _origin(factory: Any) -> str:
-    """Package of a factory, or the file of the script that defines it."""
-    name = str(getattr(factory, "__module__", ""))
-    module = sys.modules.get(name)
-    # A module that was run, not imported.
-    if module is not None and module.__spec__ is None and getattr(module, "__file__", None):
-        return str(module.__file__)
-    return name.partition(".")[0]
+def _module(factory: Any) -> str:
+    return str(getattr(factory, "__module__", ""))
+
+
+def _script(factory: Any) -> str | None:
+    """File of the script that defines a factory; None if a module does that was imported."""
+    module = sys.modules.get(_module(factory))
+    if module is None or module.__spec__ is not None:
+        return None
+    return getattr(module, "__file__", None)
 
 
 def _package(point: EntryPoint) -> str:

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from fuzzytrack.normalizations import normalizations
+from fuzzytrack.plugins import scripts
 from fuzzytrack.schedulers import schedulers
 
 SCRIPT = """
@@ -46,8 +47,10 @@ class Halved(Normalization):
 
 
 @pytest.fixture
-def script(csv):
+def script(csv, monkeypatch):
     """A script with a scheduler and a normalization, both called "scripted"."""
+    # What the test before has loaded is not sent to other processes.
+    monkeypatch.setattr(scripts, "_loaded", {})
     yield csv(SCRIPT, "mine.py")
     for registry in (schedulers, normalizations):
         if "scripted" in registry.names():
