@@ -203,7 +203,7 @@ def test_interruption_says_how_to_go_on(tmp_path, options):
 def test_workers_leave_interrupts_to_the_first_process():
     before = signal.getsignal(signal.SIGINT)
     try:
-        workers._leave_interrupts()
+        workers._begin(())
         assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
     finally:
         signal.signal(signal.SIGINT, before)
