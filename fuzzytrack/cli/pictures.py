@@ -60,12 +60,14 @@ def save_picture(
 
 
 def surfaces(system: FuzzySystem, points: int, at: dict[str, float] | None = None) -> Figure:
-    """Surfaces of all outputs; under them α and β, where one of the outputs is stiffness."""
+    """Surfaces of all outputs; under them α and β, where the outputs are no gains but give them."""
     from matplotlib.figure import Figure
 
     from fuzzytrack.plotting import plot_gain_surfaces, plot_surface
+    from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
 
-    if at or "stiffness" not in system.rules.output_names:
+    gains = find_gain_outputs(system.rules.output_names)
+    if at or gains is None or gains.setting == "direct":
         return plot_surface(system, points=points, at=at)[0]
     figure = Figure(figsize=(10.0, 8.8), layout="constrained")
     flat = len(system.rules.inputs) == 1

@@ -11,7 +11,8 @@ from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Variable
-from fuzzytrack.schedulers.review import Review, gains_of
+from fuzzytrack.schedulers.gain_outputs import gains_of
+from fuzzytrack.schedulers.review import Review
 
 __all__ = ["as_json", "explanation", "print_explanation", "print_rulebase"]
 

@@ -13,7 +13,7 @@ from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.schedulers.review import gains_of
+from fuzzytrack.schedulers.gain_outputs import gains_of
 
 __all__ = ["grid_table", "surface"]
 
@@ -80,10 +80,9 @@ def grid_table(system: FuzzySystem, points: int, fixed: dict[str, float]) -> dic
     axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs[:2]]
     axes += [np.array([fixed[name]]) for name in rules.input_names[2:]]
     grid = np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
-    table = {name: grid[:, k] for k, name in enumerate(rules.input_names)}
-    table.update(system.evaluate(grid))
-    table.update(gains_of(table))
-    return table
+    inputs = {name: grid[:, k] for k, name in enumerate(rules.input_names)}
+    outputs = system.evaluate(grid)
+    return inputs | outputs | gains_of(outputs)
 
 
 def _print_ranges(system: FuzzySystem, table: dict[str, Array]) -> None:

@@ -13,8 +13,8 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.gains.stability import critical_curves
-from fuzzytrack.gains.wdomain import alpha_beta_from_w
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.schedulers.gain_outputs import choices, find_gain_outputs
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
@@ -22,6 +22,8 @@ __all__ = ["plot_gain_plane"]
 
 Box = tuple[tuple[float, float], tuple[float, float]]
 Visited = Gains | TrackResult
+
+STIFFNESS_AND_DAMPING = ("stiffness", "damping")
 
 # A cloud smaller than this part of the triangle gets an inset.
 SMALL = 0.4
@@ -44,7 +46,8 @@ def plot_gain_plane(
         gains that repeat are drawn once.
     box : RuleBase, FuzzySystem, or ((low, high), (low, high)), optional
         Outline of what can be reached: limits of stiffness and of damping, or a rule base whose
-        outputs have limits (stiffness and damping, or alpha and beta).
+        outputs have limits: those of stiffness and damping, or of alpha and beta, are drawn as the
+        edge of an area; that of stiffness alone as a part of Kalata's curve.
     mark : mapping of str to (alpha, beta), optional
         Points to mark, by label.
     inset : bool, optional
@@ -123,32 +126,43 @@ def _pair(label: str, point: object) -> Array:
 
 
 def _outline(box: RuleBase | FuzzySystem | Box) -> dict[str, Array]:
-    """Trace the gains along the edge of a box, shape (n, 2), with a label."""
-    direct, label = False, "limits of stiffness and damping"
+    """Trace the gains along the edge of what the outputs can reach, shape (n, 2), with a label."""
     if isinstance(box, RuleBase | FuzzySystem):
         rules = shared.rules_of(box)
-        direct = {"alpha", "beta"} <= set(rules.output_names)
-        names = ("alpha", "beta") if direct else ("stiffness", "damping")
-        if not set(names) <= set(rules.output_names):
+        outputs = find_gain_outputs(rules.output_names)
+        if outputs is None:
             raise ValueError(
                 f"box: {rules.name} has outputs {', '.join(rules.output_names)}; "
-                "needed are stiffness, damping or alpha, beta"
+                f"needed are {choices()}"
             )
         label = f"limits of {rules.name}"
-        universes = [rules.output(name).universe for name in names]
+        universes = [rules.output(name).universe for name in outputs.names]
         limits = np.array([[u.low, u.high] for u in universes])
     else:
+        outputs, label = find_gain_outputs(STIFFNESS_AND_DAMPING), "limits of stiffness and damping"
+        assert outputs is not None
         limits = np.asarray(box, dtype=np.float64)
-    if limits.shape != (2, 2) or not (limits[:, 0] <= limits[:, 1]).all() or limits.min() < 0:
-        raise ValueError(
-            "box: must be ((low, high), (low, high)) of stiffness and damping, not negative, "
-            f"got {box!r}"
-        )
+        if limits.shape != (2, 2) or not (limits[:, 0] <= limits[:, 1]).all() or limits.min() < 0:
+            raise ValueError(
+                "box: must be ((low, high), (low, high)) of stiffness and damping, not negative, "
+                f"got {box!r}"
+            )
+    gains = outputs.gains(dict(zip(outputs.names, _edge(limits), strict=True)))
+    return {label: np.stack([gains["alpha"], gains["beta"]], axis=-1)}
+
+
+def _edge(limits: Array) -> list[Array]:
+    """Values of one output from limit to limit, or of two around the area between their limits.
+
+    A third one, on which α and β do not depend, keeps its lower limit.
+    """
     up = np.linspace(0.0, 1.0, 51)
-    first = np.concatenate([up, np.ones(51), up[::-1], np.zeros(51)])
-    second = np.concatenate([np.zeros(51), up, np.ones(51), up[::-1]])
-    corners = [a + (b - a) * part for (a, b), part in zip(limits, (first, second), strict=True)]
-    return {label: np.stack(corners if direct else alpha_beta_from_w(*corners), axis=-1)}
+    parts = [up]
+    if len(limits) > 1:
+        first = np.concatenate([up, np.ones(51), up[::-1], np.zeros(51)])
+        second = np.concatenate([np.zeros(51), up, np.ones(51), up[::-1]])
+        parts = [first, second, np.zeros(204)][: len(limits)]
+    return [low + (high - low) * part for (low, high), part in zip(limits, parts, strict=True)]
 
 
 def _references(ax: Axes, labels: bool = True) -> None:

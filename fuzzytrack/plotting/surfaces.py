@@ -17,8 +17,8 @@ from fuzzytrack.fuzzy.inference import output_grid
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
-from fuzzytrack.gains.wdomain import bilinear, kalata_damping
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.schedulers.gain_outputs import choices, find_gain_outputs
 
 __all__ = ["plot_gain_surfaces", "plot_relation", "plot_surface"]
 
@@ -144,25 +144,16 @@ def plot_gain_surfaces(
     """
     system = _system(rules, method)
     shared.choice("style", style, STYLES)
-    outputs = set(system.rules.output_names)
-    names: tuple[str, ...] = ("stiffness", "damping")
-    if outputs == {"stiffness"}:
-        names = ("stiffness",)
-    elif outputs != set(names):
-        names = ("alpha", "beta", "gamma") if "gamma" in outputs else ("alpha", "beta")
-        if outputs != set(names):
-            raise ValueError(
-                f"rules: {system.rules.name} has outputs {', '.join(system.rules.output_names)}; "
-                "gains need stiffness, damping or stiffness or alpha, beta or alpha, beta, gamma"
-            )
-    found = [_values(system, name, points, None, None) for name in names]
-    chosen, grid, _ = found[0]
-    gains = [values for _, _, values in found]
-    if names[0] == "stiffness":
-        damping = gains[1] if len(gains) > 1 else kalata_damping(gains[0])
-        gains = list(bilinear(gains[0], damping))
-    labels = list(GAIN_LABELS.values())
-    pictures = [_Picture(labels[k], chosen, grid, values) for k, values in enumerate(gains)]
+    outputs = find_gain_outputs(system.rules.output_names)
+    if outputs is None:
+        raise ValueError(
+            f"rules: {system.rules.name} has outputs {', '.join(system.rules.output_names)}; "
+            f"gains need {choices()}"
+        )
+    surfaces = {name: _values(system, name, points, None, None) for name in outputs.names}
+    chosen, grid, _ = surfaces[outputs.names[0]]
+    gains = outputs.gains({name: values for name, (_, _, values) in surfaces.items()})
+    pictures = [_Picture(GAIN_LABELS[name], chosen, grid, values) for name, values in gains.items()]
     return _draw(pictures, style, axes)
 
 

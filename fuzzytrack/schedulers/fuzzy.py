@@ -17,24 +17,17 @@ from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.reader import SCHEDULER_KEYS
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.gains.wdomain import bilinear
 from fuzzytrack.normalizations import Normalization, normalizations
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
+from fuzzytrack.schedulers.gain_outputs import SETTINGS, GainOutputs, choices, find_gain_outputs
 from fuzzytrack.schedulers.growing_memory import least_squares_gains
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["FuzzyScheduler"]
 
-# What the setting ``gains`` says, and the outputs that it needs.
-GAINS = {
-    "w-domain": (("stiffness", "damping"),),
-    "kalata": (("stiffness",),),
-    "direct": (("alpha", "beta"), ("alpha", "beta", "gamma")),
-}
 OPENINGS = ("growing-memory",)
 
 Settings = dict[str, str]
-Conversion = Callable[[tuple[float, ...]], tuple[float, float, float]]
 
 
 @schedulers.register("fuzzy")
@@ -74,19 +67,22 @@ class FuzzyScheduler(GainScheduler):
     rules: RuleBase
     method: str = "exact"
     normalization: Normalization = field(init=False, repr=False, compare=False)
+    outputs: GainOutputs = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         settings = _settings(self.rules)
         object.__setattr__(self, "normalization", _normalization(self.rules, settings))
-        _check_gains(self.rules, settings["gains"])
+        object.__setattr__(self, "outputs", _outputs(self.rules, settings["gains"]))
         _check_range(self.rules)
         _check_opening(settings)
         _never_silent(self.rules, self.system)
-        infer_function(self.system)
+        # Made here, since not every rule base can be compiled.
+        _ = self.inference
 
     def __getstate__(self) -> dict[str, Any]:
-        # Tables are large, and quickly made again where they are wanted.
-        return {key: value for key, value in vars(self).items() if key != "system"}
+        # Tables are large, and both are quickly made again where they are wanted.
+        made = ("system", "inference")
+        return {key: value for key, value in vars(self).items() if key not in made}
 
     @property
     def coupled(self) -> bool:  # type: ignore[override]
@@ -106,7 +102,7 @@ class FuzzyScheduler(GainScheduler):
     @property
     def uses_acceleration(self) -> bool:  # type: ignore[override]
         """Whether the rule base gives γ."""
-        return "gamma" in self.rules.output_names
+        return "gamma" in self.outputs.gain_names
 
     @property
     def opens(self) -> bool:
@@ -118,6 +114,11 @@ class FuzzyScheduler(GainScheduler):
         """The fuzzy system behind the gains, to explain and draw."""
         return FuzzySystem(self.rules, self.method)
 
+    @cached_property
+    def inference(self) -> Callable[[tuple[float, ...]], tuple[float, ...]]:
+        """The same as one scalar function, from the inputs to the outputs."""
+        return infer_function(self.system)
+
     def initial_memory(self, n_axes: int) -> Memory:
         """Memory of the normalisation; with an opening, after the number of plots."""
         own = self.normalization.initial_memory(n_axes)
@@ -126,17 +127,17 @@ class FuzzyScheduler(GainScheduler):
     def kernel(self, n_axes: int) -> Kernel:
         """Normalise, infer, convert to gains; see `GainScheduler.kernel`."""
         normalize = self.normalization.kernel(n_axes)
-        infer = infer_function(self.system)
-        to_gains = _conversion(self.rules)
+        infer = self.inference
+        to_gains = self.outputs.conversion(self.rules.output_names)
         feedback = self.normalization.feedback(n_axes) or _unchanged
 
         def schedule(
             innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
         ) -> tuple[float, float, float, float, Memory]:
             signals, own = normalize(innovation, change, dt, sigma, memory)
-            alpha, beta, gamma = to_gains(infer(signals))
+            alpha, beta, gamma, retention = to_gains(infer(signals))
             own = feedback(own, alpha, beta, gamma, dt, sigma)
-            return alpha, beta, gamma, 1.0, own
+            return alpha, beta, gamma, retention, own
 
         if not self.opens:
             return schedule
@@ -151,7 +152,7 @@ class FuzzyScheduler(GainScheduler):
             count = memory[0] + 1.0 if seen else memory[0]
             before = memory[1:]
             signals, own = normalize(innovation, change, dt, sigma, before)
-            alpha, beta, gamma = to_gains(infer(signals))
+            alpha, beta, gamma, retention = to_gains(infer(signals))
             first_alpha, first_beta = least_squares_gains(count if count > 2.0 else 2.0)
             # Both from one source: α of one and β of the other need not be stable.
             opening = first_alpha > alpha
@@ -160,7 +161,7 @@ class FuzzyScheduler(GainScheduler):
             gamma = 0.0 if opening else gamma
             own = feedback(own, alpha, beta, gamma, dt, sigma)
             own = own if seen | every_step else before
-            return alpha, beta, gamma, 1.0, (count, *own)
+            return alpha, beta, gamma, retention, (count, *own)
 
         return open_and_schedule
 
@@ -253,20 +254,19 @@ def _check_opening(settings: Settings) -> None:
         )
 
 
-def _check_gains(rules: RuleBase, gains: str) -> None:
-    if gains not in GAINS:
+def _outputs(rules: RuleBase, gains: str) -> GainOutputs:
+    if gains not in SETTINGS:
         raise RuleBaseError(
-            f"unknown gains {str(gains)!r}; one of {', '.join(GAINS)}", _location(gains)
+            f"unknown gains {str(gains)!r}; one of {', '.join(SETTINGS)}", _location(gains)
         )
-    outputs = set(rules.output_names)
-    allowed = [set(names) for names in GAINS[gains]]
-    if outputs not in allowed:
-        wanted = " or ".join(", ".join(sorted(names)) for names in allowed)
+    outputs = find_gain_outputs(rules.output_names)
+    if outputs is None or outputs.setting != gains:
         raise RuleBaseError(
-            f"gains {str(gains)!r} need outputs {wanted}; {rules.name} has "
+            f"gains {str(gains)!r} need outputs {choices(gains)}; {rules.name} has "
             f"{', '.join(rules.output_names)}",
             _location(gains),
         )
+    return outputs
 
 
 def _check_range(rules: RuleBase) -> None:
@@ -295,43 +295,6 @@ def _check_range(rules: RuleBase) -> None:
             f"{rules.name}: the universes of its outputs reach unstable gains; needed are "
             "alpha >= 0, beta >= 0, 2 alpha + beta <= 4 and 0 <= gamma <= 4 alpha beta/(2 - alpha)"
         )
-
-
-def _kalata(outputs: tuple[float, ...]) -> tuple[float, float, float]:
-    """Gains of stiffness alone: the damping at which they are optimal for some tracking index."""
-    omega0 = outputs[0]
-    alpha, beta = bilinear(omega0, math.sqrt(0.5 + 0.25 * omega0 * omega0))
-    return alpha, beta, 0.0
-
-
-def _conversion(rules: RuleBase) -> Conversion:
-    """Function from the tuple of outputs to (α, β, γ)."""
-    place = {name: k for k, name in enumerate(rules.output_names)}
-    if "stiffness" in place and "damping" not in place:
-        return _kalata
-    if "stiffness" in place:
-        stiffness, damping = place["stiffness"], place["damping"]
-
-        def from_w(outputs: tuple[float, ...]) -> tuple[float, float, float]:
-            # `fuzzytrack.gains.wdomain.bilinear` with a single division.
-            omega0, zeta = outputs[stiffness], outputs[damping]
-            shared = 4.0 * omega0 / (1.0 + omega0 * (zeta + zeta + omega0))
-            return zeta * shared, omega0 * shared, 0.0
-
-        return from_w
-    first, second = place["alpha"], place["beta"]
-    if "gamma" not in place:
-
-        def direct(outputs: tuple[float, ...]) -> tuple[float, float, float]:
-            return outputs[first], outputs[second], 0.0
-
-        return direct
-    third = place["gamma"]
-
-    def direct_gamma(outputs: tuple[float, ...]) -> tuple[float, float, float]:
-        return outputs[first], outputs[second], outputs[third]
-
-    return direct_gamma
 
 
 def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:

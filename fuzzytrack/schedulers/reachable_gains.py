@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -16,6 +18,7 @@ from fuzzytrack.gains.certificate import (
     polygon_in_gains,
 )
 from fuzzytrack.gains.wdomain import bilinear
+from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
 
 __all__ = ["REACHES", "certify", "reachable_gains"]
 
@@ -90,31 +93,27 @@ def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
     """Gains round what a rule base can reach, and gains that it does reach."""
     if reach not in REACHES:
         raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
-    names = sorted(rules.output_names, reverse="stiffness" in rules.output_names)
-    if names not in (["stiffness", "damping"], ["stiffness"], ["alpha", "beta"]):
+    outputs = find_gain_outputs(rules.output_names)
+    if outputs is None or "gamma" in outputs.names:
         raise RuleBaseError(
             f"{rules.name} cannot be certified: needed are outputs stiffness and damping, "
             f"stiffness alone, or alpha and beta; it has {', '.join(rules.output_names)}"
         )
-    if names == ["stiffness"]:
-        universe = rules.outputs[0].universe
-        ends = np.array([universe.low, universe.high])
-        if reach == "rules":
-            ends = _rule_conclusions(rules, names)
-        return _kalata_curve(float(ends.min()), float(ends.max()))
-    w_domain = "stiffness" in names
+    universes = [rules.output(name).universe for name in outputs.names]
+    limits = [(u.low, u.high) for u in universes]
     if reach == "rules":
-        points = _rule_conclusions(rules, names)
-        if not w_domain:
-            return points, points
-        around, _ = polygon_in_gains(convex_hull(points))
-        # A rule that fires alone concludes a corner; what lies between two may need both.
-        return around, np.stack(bilinear(points[:, 0], points[:, 1]), axis=1)
-    first, second = ((u.low, u.high) for u in (rules.output(name).universe for name in names))
-    if w_domain:
-        return polygon_in_gains(box(first, second))
-    corners = np.array([[alpha, beta] for alpha in first for beta in second])
-    return corners, corners
+        points = _rule_conclusions(rules, outputs.names)
+    else:
+        points = np.array(list(product(*limits)))
+    if outputs.setting == "direct":
+        return points, points
+    if outputs.setting == "kalata":
+        return _kalata_curve(float(points.min()), float(points.max()))
+    if reach == "universe":
+        return polygon_in_gains(box(*limits))
+    around, _ = polygon_in_gains(convex_hull(points))
+    # A rule that fires alone concludes a corner; what lies between two may need both.
+    return around, np.stack(bilinear(points[:, 0], points[:, 1]), axis=1)
 
 
 def _kalata_curve(lowest: float, highest: float, pieces: int = 32) -> tuple[Array, Array]:
@@ -132,7 +131,7 @@ def _kalata_curve(lowest: float, highest: float, pieces: int = 32) -> tuple[Arra
     return np.concatenate([reached, between]), reached
 
 
-def _rule_conclusions(rules: RuleBase, names: list[str]) -> Array:
+def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
     """What each rule concludes about the outputs, shape (n_rules, n_outputs)."""
     operators = rules.operators
     algebra = (operators.conjunction, operators.disjunction, operators.defuzzification)

@@ -10,11 +10,10 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.gains.wdomain import alpha_beta_from_w, kalata_damping
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
+from fuzzytrack.schedulers.gain_outputs import gains_of
 
-__all__ = ["Review", "gains_of", "review"]
-
+__all__ = ["Review", "review"]
 
 # Points of the grid on which a rule base is looked at, over all inputs.
 _POINTS = 10_201
@@ -69,23 +68,6 @@ class Review:
             "table_bounds": self.table_bounds,
             "schedules": self.schedules,
         }
-
-
-def gains_of(outputs: dict[str, Array]) -> dict[str, Array]:
-    """α and β of stiffness, with or without damping; nothing for other outputs."""
-    if "stiffness" not in outputs:
-        return {}
-    stiffness = outputs["stiffness"]
-    # NaN where no rule fires
-    known = ~np.isnan(stiffness + outputs.get("damping", 0.0))
-    damping = (
-        outputs["damping"][known] if "damping" in outputs else kalata_damping(stiffness[known])
-    )
-    gains = {name: np.full(known.shape, np.nan) for name in ("alpha", "beta")}
-    found = alpha_beta_from_w(stiffness[known], damping)
-    for name, values in zip(gains, found, strict=True):
-        gains[name][known] = values
-    return gains
 
 
 def review(rules: RuleBase) -> Review:

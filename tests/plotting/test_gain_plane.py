@@ -1,8 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
 import fuzzytrack as ft
+from fuzzytrack.fuzzy.rulebase import Consequent
+from fuzzytrack.fuzzy.variable import Universe
+from fuzzytrack.gains import kalata
 from fuzzytrack.plotting import plot_gain_plane
 
 FIXED = (0.5377, 0.2018)
@@ -64,6 +69,26 @@ def test_box_is_the_image_of_its_edge():
 
 def test_box_of_direct_gains_is_a_rectangle():
     outline = lines(plot_gain_plane({}, ft.load_rulebase("chan-style"))[1])["limits of chan-style"]
+    assert outline.min(axis=0) == pytest.approx([0.3, 0.1])
+    assert outline.max(axis=0) == pytest.approx([0.9, 0.6])
+
+
+def test_box_of_stiffness_alone_is_a_part_of_kalatas_curve():
+    rules = ft.load_rulebase("omega-schedule")
+    outline = lines(plot_gain_plane({}, rules)[1])["limits of omega-schedule"]
+    universe = rules.output("stiffness").universe
+    stiffness = np.linspace(universe.low, universe.high, len(outline))
+    # ω₀ = √λ/2
+    np.testing.assert_allclose(outline.T, kalata((2 * stiffness) ** 2), rtol=1e-12)
+
+
+def test_box_of_three_gains_is_that_of_the_first_two():
+    base = ft.load_rulebase("chan-style")
+    (alpha, beta), (first, *_) = base.outputs, base.rules
+    gamma = replace(beta, name="gamma", universe=Universe(0.0, 0.5, 51))
+    more = replace(first, consequents=(*first.consequents, Consequent("gamma", beta.sets[0].name)))
+    rules = replace(base, outputs=(gamma, beta, alpha), rules=(more, *base.rules[1:]), layout=None)
+    outline = lines(plot_gain_plane({}, rules)[1])["limits of chan-style"]
     assert outline.min(axis=0) == pytest.approx([0.3, 0.1])
     assert outline.max(axis=0) == pytest.approx([0.9, 0.6])
 
