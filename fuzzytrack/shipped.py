@@ -1,4 +1,4 @@
-"""YAML files that come with fuzzytrack: found by name, or any file by its path."""
+"""YAML files that come with fuzzytrack, by name, and other files by path."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fuzzytrack.errors import FileError
-from fuzzytrack.yamltree import MAX_BYTES, quoted, suggestion
+from fuzzytrack.yamltree import MAX_BYTES, Document, quoted, suggestion
 
 __all__ = ["Shipped"]
 
@@ -63,21 +63,24 @@ class Shipped:
             )
         return self._directory() / f"{name_or_path}.yaml"
 
-    def read(self, path: Path) -> bytes:
-        """Text of a file, up to one byte more than `fuzzytrack.yamltree` takes.
+    def document(self, name_or_path: PathOrName) -> Document:
+        """Document of a shipped file by name, or of the file at a path.
 
         Raises
         ------
         FileError
-            Of the kind `failure`, if it cannot be read.
+            Of the kind `failure`, if there is no such name, or the file cannot be read or is not
+            YAML.
         """
+        path = self.path(name_or_path)
         try:
             with open(path, "rb") as stream:
                 # One byte more than allowed is enough to refuse the rest.
-                return stream.read(MAX_BYTES + 1)
+                text = stream.read(MAX_BYTES + 1)
         except (OSError, ValueError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
             raise self.failure(f"cannot read {self.what} {quoted(str(path))}: {why}") from error
+        return Document(text, str(path), failure=self.failure)
 
     def _directory(self) -> Path:
         package = Path(__file__).resolve().parent

@@ -13,10 +13,10 @@ from fuzzytrack.version import __version__
 
 __all__ = ["app"]
 
-# Where each command lives, and what the list of commands says of it. A module is imported when its
-# command is called: nobody waits for those that he does not use.
+# Module and function of each command, and its line in the list of commands. A module is imported
+# when its command is called, so that a command loads only what it uses.
 COMMANDS = {
-    "demo": ("demo:demo", "Track a simulated turning target, and draw what happens."),
+    "demo": ("demo:demo", "Track a simulated turning target, and draw the results."),
     "track": (
         "track:track",
         "Track the plots of a file, or of a folder of files in order of their names.",
@@ -38,11 +38,11 @@ COMMANDS = {
     "gains": ("gains:gains", "Say what fixed gains do: stability, poles, noise and lag."),
     "trackers": (
         "trackers:trackers",
-        "List what there is to track with, with its source; plug-ins included.",
+        "List trackers, schedulers and normalizations with their sources, plug-ins included.",
     ),
     "reproduce": (
         "reproduce:reproduce",
-        "Rebuild the experiments of a paper, and hold its numbers against ours.",
+        "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
     "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
     "design": ("gains:design", "Choose gains by a rule of design, and say what they do."),
@@ -50,7 +50,7 @@ COMMANDS = {
 
 
 class Application(Commands):
-    """The commands by name; the one that is called takes the place of its line in the list."""
+    """The commands by name; the one that is called is imported in place of its placeholder."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the command that is called."""
@@ -81,7 +81,7 @@ app = typer.Typer(
 
 
 def _line() -> None:
-    """Stand for a command in the list."""
+    """Placeholder of a command in the list."""
 
 
 for _name, (_home, _help) in COMMANDS.items():

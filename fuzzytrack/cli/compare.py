@@ -1,9 +1,9 @@
-"""The command that compares trackers on simulated noise, and the table of a comparison."""
+"""The command `compare`: trackers on a true track with simulated noise."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -14,7 +14,7 @@ from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import make_tracker
 
-__all__ = ["DEFAULT_TRACKERS", "as_json", "compare", "print_comparison", "trackers_named"]
+__all__ = ["DEFAULT_TRACKERS", "compare", "print_comparison", "trackers_named"]
 
 DEFAULT_TRACKERS = "fixed:alpha=0.5377:beta=0.2018,chan-style,stiffness-damping"
 
@@ -51,7 +51,7 @@ def compare(
     with progress("comparing") as watch:
         found = compare_tracks(chosen, tracks, noise, runs, seed, watch)
     if json:
-        print_json({"file": file, "tracks": len(tracks), **as_json(found)})
+        print_json({"file": file, "tracks": len(tracks), **found.to_json_dict()})
     else:
         print_comparison(found)
 
@@ -69,30 +69,17 @@ def trackers_named(text: str) -> dict[str, Tracker]:
     return found
 
 
-def as_json(found: Comparison) -> dict[str, Any]:
-    """Comparison as JSON prints it."""
-    keys = ("predicted_rmse", "predicted_error", "filtered_rmse", "filtered_error")
-    return {
-        "noise": found.sigma,
-        "runs": found.runs,
-        "seed": found.seed,
-        "scans": round(found.scans.mean()),
-        "measured_rmse": found.measured_rmse,
-        "trackers": [
-            {"name": name, **{key: getattr(found, key)[k] for key in keys}}
-            for k, name in enumerate(found.names)
-        ],
-    }
-
-
 def print_comparison(found: Comparison) -> None:
     """Table of a comparison, RMSE ± its standard error."""
-    rows = []
-    for k, name in enumerate(found.names):
-        predicted = with_error(found.predicted_rmse[k], found.predicted_error[k])
-        filtered = with_error(found.filtered_rmse[k], found.filtered_error[k])
-        change = 100 * (found.predicted_rmse[k] / found.predicted_rmse[0] - 1)
-        rows.append([name, predicted, filtered, "" if k == 0 else f"{change:+.1f} %"])
+    rows = [
+        [
+            name,
+            with_error(found.predicted_rmse[k], found.predicted_error[k]),
+            with_error(found.filtered_rmse[k], found.filtered_error[k]),
+            "" if k == 0 else f"{100 * found.predicted_change[k]:+.1f} %",
+        ]
+        for k, name in enumerate(found.names)
+    ]
     rows += [[], ["the plots themselves", "", show(found.measured_rmse), ""]]
     print_table(
         ["RMSE of position (m)", "predicted", "filtered", "vs first"],

@@ -1,8 +1,8 @@
-"""The command that shows what fuzzytrack does, without a file and without a network."""
+"""The command `demo`: a simulated turning target, tracked and drawn."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +13,6 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.compare import (
     DEFAULT_TRACKERS,
-    as_json,
     print_comparison,
     trackers_named,
 )
@@ -47,7 +46,7 @@ def demo(
     runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 100,
     json: options.Json = False,
 ) -> None:
-    """Track a simulated turning target, and draw what happens.
+    """Track a simulated turning target, and draw the results.
 
     A target flies straight at 150 m/s, turns by 180 degrees at 3 degrees a second, and flies
     straight again; it is seen every second with 50 m of noise on each axis.
@@ -65,7 +64,7 @@ def demo(
     written = _tables(folder, found, results[RULES])
     written += _pictures(folder, truth, results)
     if json:
-        print_json({**as_json(found), "files": written})
+        print_json({**found.to_json_dict(), "files": written})
         return
     print_comparison(found)
     say()
@@ -76,14 +75,7 @@ def demo(
 def _tables(folder: Path, found: Comparison, result: TrackResult) -> list[Path]:
     """Write the comparison and one track."""
     comparison, track = folder / "comparison.csv", folder / "track.csv"
-    columns: dict[str, Sequence[str] | Array] = {
-        "tracker": found.names,
-        "predicted_rmse": found.predicted_rmse,
-        "predicted_error": found.predicted_error,
-        "filtered_rmse": found.filtered_rmse,
-        "filtered_error": found.filtered_error,
-    }
-    write_table(comparison, columns)
+    write_table(comparison, {"tracker": found.names, **found.errors()})
     plots = Track("", result.time, result.measured)
     write_tracks(track, Recording("demo", "t", "", ("x", "y"), (plots,)), [result])
     return [comparison, track]
@@ -106,7 +98,7 @@ def _pictures(
         from fuzzytrack.plotting import plot_gain_plane
 
         fixed, *others = results
-        # A single point would be lost among the others' gains.
+        # Fixed gains are a single point, drawn as a mark above those of the others.
         point = tuple(float(getattr(results[fixed].gains, n)[-1, 0]) for n in ("alpha", "beta"))
         visited = {name: results[name].gains for name in others}
         return plot_gain_plane(visited, rules, mark={fixed: (point[0], point[1])})[0]

@@ -1,4 +1,4 @@
-"""What commands print: tables for people, JSON for programs, progress on stderr."""
+"""Output of the commands: tables for people, JSON for programs, progress on stderr."""
 
 from __future__ import annotations
 
@@ -22,24 +22,23 @@ __all__ = ["plain", "print_json", "print_table", "progress", "say", "show", "wit
 
 
 def say(text: str = "") -> None:
-    """Print a line as it is, never folded."""
+    """Print a line without wrapping it."""
     typer.echo(text)
 
 
 def show(number: float, digits: int = 4) -> str:
-    """Write a number for a table; a dash for what is not known."""
+    """Format a number for a table; a dash for NaN."""
     if not math.isfinite(number):
         return "–" if math.isnan(number) else str(number)
     text = f"{number:.{digits}g}"
-    # No powers of ten where plain digits are short.
+    # Write plain digits rather than a power of ten where they are short.
     return f"{number:.0f}" if "e+" in text and abs(number) < 1e9 else text
 
 
 def with_error(value: float, error: float) -> str:
-    """Write a number and its standard error, with as many digits as that allows."""
+    """Format a number and its standard error, to two digits of the error."""
     if not (error > 0 and math.isfinite(value)):
         return show(value)
-    # Two digits of the error.
     digits = max(0, 1 - math.floor(math.log10(error)))
     return f"{value:.{digits}f} ± {error:.{digits}f}"
 
@@ -58,7 +57,7 @@ def print_table(
     columns : sequence of str
         Heads.
     rows : sequence of sequence of str
-        Cells; a last row after an empty one stands under a line.
+        Cells; an empty row draws a line.
     title : str
         Line above the table.
     words : int
@@ -97,12 +96,12 @@ def _empty_table(style: Any) -> Table:
 
 
 def print_json(value: Any) -> None:
-    """Print a value as JSON; what is no number becomes null."""
+    """Print a value as JSON, with null for NaN and infinity."""
     say(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def plain(value: Any) -> Any:
-    """Value in the types of JSON; what is no number becomes null."""
+    """Value in the types of JSON, with null for NaN and infinity."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
@@ -118,12 +117,12 @@ def plain(value: Any) -> Any:
 
 @contextmanager
 def progress(label: str) -> Iterator[Progress]:
-    """Bar with the time left, on stderr, if that is a terminal.
+    """Progress bar with the remaining time on stderr, if that is a terminal.
 
     Yields
     ------
     callable
-        To be called with the share of the work that is done.
+        Takes the share of the work that is done.
     """
     if not sys.stderr.isatty():
         yield lambda share: None

@@ -18,7 +18,7 @@ FORMATS = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".
 
 
 def check_picture(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
-    """Look ahead whether a picture can be written; ValueError or OSError if not."""
+    """Check that a picture can be written, before it is drawn; ValueError or OSError if not."""
     from fuzzytrack.io.files import check_output
 
     suffix = Path(path).suffix.lower()

@@ -1,4 +1,4 @@
-"""The command that rebuilds published experiments."""
+"""The command `reproduce`: published experiments rebuilt, with published and own numbers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def reproduce(
     ] = None,
     json: options.Json = False,
 ) -> None:
-    """Rebuild the experiments of a paper, and hold its numbers against ours.
+    """Rebuild the experiments of a paper, and compare its numbers with ours.
 
     A number matches if the difference is within rounding, or within the Monte Carlo error of both.
     """

@@ -1,4 +1,4 @@
-"""The command that runs Monte Carlo experiments, and the table of their results."""
+"""The command `testbed`: Monte Carlo experiments, and the table of their results."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def experiment(
         typer.Option("--output", "-o", metavar="DIR", help="Folder for report and results."),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with what the folder holds already.")
+        bool, typer.Option("--resume", help="Continue the job whose chunks are in the folder.")
     ] = False,
     plugin: options.Plugins = None,
     json: options.Json = False,
@@ -61,7 +61,7 @@ def experiment(
         _list(json)
         return
     if resume and output is None:
-        raise ValueError("--resume needs -o DIR, the folder of the job to go on with")
+        raise ValueError("--resume needs -o DIR, the folder of the job to continue")
     options.load_plugins(plugin)
     drawn = load_scenario(scenario)
     chosen = _chosen(trackers, drawn)
@@ -82,7 +82,7 @@ def experiment(
     except KeyboardInterrupt:
         if output is None:
             raise
-        typer.echo(f"interrupted; what is done is in {output}, --resume goes on", err=True)
+        typer.echo(f"interrupted; finished runs are in {output}; continue with --resume", err=True)
         raise typer.Exit(130) from None
     if json:
         print_json({**found.to_json_dict(), "files": written})
@@ -114,7 +114,7 @@ def _chosen(text: str | None, scenario: Scenario) -> Mapping[str, Tracker] | Non
 
 
 def _folder(output: str) -> Path:
-    """Folder, made if need be; finds out what cannot be written before the work is done."""
+    """Folder, made if it does not exist; checks before the work that its files can be written."""
     folder = Path(output)
     if folder.exists() and not folder.is_dir():
         raise NotADirectoryError(None, "is not a folder", output)
@@ -175,7 +175,7 @@ def _print(found: Results) -> None:
     ]
     print_table(["error of prediction (m)", "mean", "std dev", "peak RMSE", "at scan"], rows)
     say()
-    say("vs first: 95 % interval of the change of a run's RMSE of prediction; * if without 0")
+    say("vs first: 95 % interval of the change in a run's RMSE of prediction; * means 0 is outside")
 
 
 def _title(found: Results) -> str:

@@ -1,4 +1,4 @@
-"""The command that lists what there is to track with."""
+"""The command `trackers`: a list of trackers, schedulers and normalizations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["trackers"]
 
 
 def trackers(plugin: options.Plugins = None, json: options.Json = False) -> None:
-    """List what there is to track with, with its source; plug-ins included."""
+    """List trackers, schedulers and normalizations with their sources, plug-ins included."""
     options.load_plugins(plugin)
     entries = catalog()
     if json:

@@ -45,8 +45,7 @@ def loads_rulebase(text: str | bytes, file: str = "<text>") -> RuleBase:
     >>> loads_rulebase(dumps_rulebase(rules)) == rules
     True
     """
-    document = Document(text, file)
-    return Reader(document).rulebase()
+    return Reader(Document(text, file)).rulebase()
 
 
 def load_rulebase(name_or_path: str | os.PathLike[str]) -> RuleBase:
@@ -67,8 +66,7 @@ def load_rulebase(name_or_path: str | os.PathLike[str]) -> RuleBase:
     RuleBaseError
         If there is no such name, or the file cannot be read, or is no rule base.
     """
-    path = rulebase_path(name_or_path)
-    return loads_rulebase(_SHIPPED.read(path), str(path))
+    return Reader(_SHIPPED.document(name_or_path)).rulebase()
 
 
 def shipped_rulebases() -> tuple[str, ...]:

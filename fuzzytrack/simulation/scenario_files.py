@@ -75,14 +75,12 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     ScenarioError
         If there is no such name, or the file cannot be read, or is no scenario.
     """
-    path = scenario_path(name_or_path)
-    return loads_scenario(_SHIPPED.read(path), str(path))
+    return ScenarioReader(_SHIPPED.document(name_or_path)).scenario()
 
 
 def scenario_source(name_or_path: str | os.PathLike[str]) -> str:
-    """Paper, or other origin, of a scenario, without making it; as for `load_scenario`."""
-    path = scenario_path(name_or_path)
-    return ScenarioReader(Document(_SHIPPED.read(path), str(path), failure=ScenarioError)).source()
+    """Paper or other source of a scenario, read without making its tracks; see `load_scenario`."""
+    return ScenarioReader(_SHIPPED.document(name_or_path)).source()
 
 
 def shipped_scenarios() -> tuple[str, ...]:

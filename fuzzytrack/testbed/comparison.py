@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,8 +16,6 @@ from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["Comparison", "compare", "compare_tracks"]
-
-#: Called with the share of the work that is done.
 
 # Coordinates a batch may hold: a tracker makes about ten arrays of this many floats (8 MB each).
 _BATCH = 1_000_000
@@ -82,6 +81,31 @@ class Comparison:
     def filtered_error(self) -> Array:
         """Standard error of `filtered_rmse` (m); NaN for a single run."""
         return _standard_error(self.filtered_mse)
+
+    @property
+    def predicted_change(self) -> Array:
+        """Relative change of `predicted_rmse` against the first tracker, shape (n_trackers,)."""
+        return np.asarray(self.predicted_rmse / self.predicted_rmse[0] - 1)
+
+    def errors(self) -> dict[str, Array]:
+        """Errors with their standard errors (m), by name, each of shape (n_trackers,)."""
+        names = ("predicted_rmse", "predicted_error", "filtered_rmse", "filtered_error")
+        return {name: getattr(self, name) for name in names}
+
+    def to_json_dict(self) -> dict[str, Any]:
+        """Summary in plain types, for JSON; NaN for the standard errors of a single run."""
+        errors = self.errors()
+        return {
+            "noise": self.sigma,
+            "runs": self.runs,
+            "seed": self.seed,
+            "scans": round(self.scans.mean()),
+            "measured_rmse": self.measured_rmse,
+            "trackers": [
+                {"name": name, **{key: float(values[k]) for key, values in errors.items()}}
+                for k, name in enumerate(self.names)
+            ],
+        }
 
 
 def compare(

@@ -195,7 +195,7 @@ def test_interruption_says_how_to_go_on(tmp_path, options):
     if not options:
         assert done.stderr == "interrupted\n"
         return
-    assert done.stderr == "interrupted; what is done is in out, --resume goes on\n"
+    assert done.stderr == "interrupted; finished runs are in out; continue with --resume\n"
     assert [p.suffix for p in (tmp_path / "out").iterdir()] == [""]
     assert len(list((tmp_path / "out" / "chunks").glob("*.npz"))) == 1
 

@@ -1,3 +1,4 @@
+import json
 import math
 
 import numpy as np
@@ -173,3 +174,18 @@ def test_tracks_must_agree():
         compare_tracks(FIXED, [straight(5), (np.arange(5), np.zeros((5, 1)))], 1.0, 1, 0)
     with pytest.raises(ValueError, match="at least one"):
         compare_tracks(FIXED, [], 1.0, 1, 0)
+
+
+def test_json_and_changes_are_those_of_the_errors():
+    trackers = {**FIXED, "slow": AlphaBetaTracker(FixedGains(0.2, 0.02))}
+    found = compare(trackers, *straight(12), 2.0, 5, 7)
+    text = json.loads(json.dumps(found.to_json_dict()))
+    assert {key: text[key] for key in ("noise", "runs", "seed", "scans")} == {
+        "noise": 2.0, "runs": 5, "seed": 7, "scans": 10,
+    }  # fmt: skip
+    assert text["measured_rmse"] == found.measured_rmse
+    assert [each["name"] for each in text["trackers"]] == ["fixed", "slow"]
+    for name in ("predicted_rmse", "predicted_error", "filtered_rmse", "filtered_error"):
+        assert [each[name] for each in text["trackers"]] == getattr(found, name).tolist()
+    first, second = found.predicted_rmse
+    assert found.predicted_change.tolist() == [0.0, pytest.approx((second - first) / first)]
