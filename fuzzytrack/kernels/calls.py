@@ -27,7 +27,7 @@ def _call(builder: Any, address: Any, arguments: list[Any]) -> None:
 
 
 def _call_step(typing_context: Any, step: Any, buffer: Any, count: Any) -> Any:
-    """Call a step function, see `fuzzytrack.lanes.runner.Recursion`."""
+    """Call a step function, see `fuzzytrack.lanes.program.LaneProgram`."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         step, buffer, count = arguments

@@ -1,1 +1,1 @@
-"""Many tracks side by side: how a recursion runs over blocks of lanes."""
+"""Many tracks side by side: the arithmetic of a tracker, run over blocks of lanes."""

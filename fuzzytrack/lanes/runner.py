@@ -1,4 +1,4 @@
-"""Runs the recursion over lanes and time, in plain Python or compiled."""
+"""Runs a lane program over lanes and time, in plain Python or compiled."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.kernels.compile import entry_point
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows, aligned
+from fuzzytrack.lanes.program import LaneProgram
 
-__all__ = ["InfinitePlotError", "Recursion", "Runner"]
+__all__ = ["InfinitePlotError", "Runner"]
 
 
 #: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
@@ -34,44 +35,15 @@ class InfinitePlotError(ValueError):
     """A plot is infinite."""
 
 
-@dataclass(frozen=True, eq=False)
-class Recursion:
-    """A tracker's arithmetic: what a lane remembers, and how it goes one step on.
-
-    Attributes
-    ----------
-    rows : Rows
-        Layout of a lane.
-    memory : tuple of float
-        Memory of a lane that has seen nothing, as long as `rows` says.
-    step : callable
-        ``step(stride)`` makes the function ``f(buffer, count)`` that does one time step of the
-        first `count` lanes, `stride` at most, in place in their buffer, in which row `r` of lane
-        `i` is at ``r * stride + i``. It finds plot, sigma and dt filled in, and leaves state and
-        results. It is run in plain Python over a list and compiled over an array, so it has loops,
-        selects and numbers in it, and calls nothing else.
-    steady : callable, optional
-        ``steady(stride, results)`` makes the function ``f(buffer, count, dt, plots, predicted)``
-        that does the same for lanes that have all seen two plots and have their time step in
-        common, only faster, and leaves the results in the buffer or not. It reads the plots where
-        they lie, and writes the predictions where they are to be.
-    """
-
-    rows: Rows
-    memory: tuple[float, ...]
-    step: Callable[[int], Callable[[Any, int], None]]
-    steady: Callable[[int, bool], Callable[[Any, int, float, Any, Any], None]] | None = None
-
-
 @dataclass(eq=False)
 class Runner:
-    """Runs a recursion over lanes and time.
+    """Runs a lane program over lanes and time.
 
     Lanes are kept as an array of shape (rows.kept, lanes), see `fuzzytrack.lanes.layout.Rows`.
 
     Attributes
     ----------
-    recursion : Recursion
+    program : LaneProgram
     work : int
         Coordinates that were tracked so far.
     horizon : int
@@ -80,7 +52,7 @@ class Runner:
         After `compile`, that of `fuzzytrack.lanes.block_loop`, from its argument `b` on.
     """
 
-    recursion: Recursion
+    program: LaneProgram
     work: int = 0
     horizon: int = 0
     hop: Callable[..., int] | None = field(default=None, init=False, repr=False)
@@ -89,13 +61,13 @@ class Runner:
     @property
     def rows(self) -> Rows:
         """Layout of a lane."""
-        return self.recursion.rows
+        return self.program.rows
 
     def fresh(self, count: int) -> Array:
         """Lanes that have seen nothing, shape (rows.kept, count)."""
         lanes = np.zeros((self.rows.kept, count))
         lanes[: self.rows.velocity] = np.nan
-        lanes[self.rows.memory : self.rows.state] = np.reshape(self.recursion.memory, (-1, 1))
+        lanes[self.rows.memory : self.rows.state] = np.reshape(self.program.memory, (-1, 1))
         return lanes
 
     def __call__(
@@ -178,7 +150,7 @@ class Runner:
 
     @cached_property
     def _plain_step(self) -> Callable[[Any, int], None]:
-        return self.recursion.step(1)
+        return self.program.step(1)
 
     def _run_plain(
         self, after: Array, plots: Array, dts: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
@@ -276,12 +248,12 @@ class Runner:
         self.hop = partial(hop.overloads[hop.signatures[0]].entry_point, *places)
 
     def step_code(self, dtype: type = np.float64) -> Any:
-        """Compiled step of the recursion, see `fuzzytrack.kernels.compile.entry_point`."""
-        return self._compiled_once(("step", dtype), lambda: self.recursion.step(BLOCK), "vpi")
+        """Compiled step of the program, see `fuzzytrack.kernels.compile.entry_point`."""
+        return self._compiled_once(("step", dtype), lambda: self.program.step(BLOCK), "vpi")
 
     def steady_code(self, results: bool, dtype: type = np.float64) -> Any:
         """Compiled steady function, or None; that with the results of every step or without."""
-        steady = self.recursion.steady
+        steady = self.program.steady
         if steady is None:
             return None
         return self._compiled_once((results, dtype), lambda: steady(BLOCK, results), "vpixpp")

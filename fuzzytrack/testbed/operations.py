@@ -289,15 +289,15 @@ def _plots(scans: int, n_axes: int) -> list[list[float]]:
 def _run(tracker: LaneTracker, plots: list[list[float]]) -> Iterator[tuple[bool, tuple[int, int]]]:
     """For every scan of a lane: whether it was corrected, and operations of scheduler and rest."""
     n_axes = len(plots[0])
-    recursion = tracker.recursion(n_axes)
-    rows = recursion.rows
+    program = tracker.program(n_axes)
+    rows = program.rows
     tally, inside = Tally(), Tally()
     scheduler = getattr(tracker, "scheduler", None)
     kernel = scheduler.kernel(n_axes).__code__ if isinstance(scheduler, GainScheduler) else None
-    step = _counting(recursion.step(1), tally, inside, kernel)
+    step = _counting(program.step(1), tally, inside, kernel)
     fresh = [0.0] * rows.total
     fresh[: rows.velocity] = [math.nan] * rows.velocity
-    fresh[rows.memory : rows.state] = recursion.memory
+    fresh[rows.memory : rows.state] = program.memory
     b = [tally.number(value) for value in fresh]
     for k, plot in enumerate(plots):
         given = [*plot, *[_SIGMA] * n_axes, _PERIOD if k else 0.0]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from fuzzytrack.lanes.layout import Rows
-from fuzzytrack.lanes.runner import Recursion
+from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta_step import steady_function, step_function
 from fuzzytrack.trackers.base import trackers
@@ -82,12 +82,12 @@ class AlphaBetaTracker(LaneTracker):
         """Name for messages: that of the scheduler."""
         return type(self.scheduler).__name__
 
-    def recursion(self, n_axes: int) -> Recursion:
-        """The α-β-γ recursion with the scheduler's gains; see `LaneTracker.recursion`."""
+    def program(self, n_axes: int) -> LaneProgram:
+        """The α-β-γ recursion with the scheduler's gains; see `LaneTracker.program`."""
         scheduler, two_point = self.scheduler, self.start_mode == "two-point"
         memory = tuple(float(m) for m in scheduler.initial_memory(n_axes))
         rows = Rows(n_axes, len(memory))
-        return Recursion(
+        return LaneProgram(
             rows,
             memory,
             lambda stride: step_function(scheduler, rows, two_point, stride),

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from fuzzytrack.gains import design
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.lanes.layout import Rows
-from fuzzytrack.lanes.runner import Recursion
+from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.state import TrackState
@@ -124,10 +124,10 @@ class ParallelBank(LaneTracker):
         alphas = np.linspace(self.lowest, self.highest, self.members)
         return tuple(zip(alphas.tolist(), design.benedict_bordner(alphas).tolist(), strict=True))
 
-    def recursion(self, n_axes: int) -> Recursion:
-        """The members' recursions and their selection; see `LaneTracker.recursion`."""
+    def program(self, n_axes: int) -> LaneProgram:
+        """The members' recursions and their selection; see `LaneTracker.program`."""
         rows = Rows(n_axes, 3 * self.members)
-        return Recursion(rows, (0.0,) * rows.n_memory, lambda stride: _step(self, rows, stride))
+        return LaneProgram(rows, (0.0,) * rows.n_memory, lambda stride: _step(self, rows, stride))
 
     def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
         """State of a new track; see `LaneTracker.start`.

@@ -9,7 +9,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import nonnegative, number, positive, within
-from fuzzytrack.lanes.runner import Recursion
+from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.imm_step import MODEL, PROBABILITIES, imm_rows, step_function
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -140,12 +140,12 @@ class InteractingModels(LaneTracker):
         leave, settle = 1.0 - self.quiet_stay, 1.0 - self.maneuver_stay
         return leave / (leave + settle) if leave + settle > 0.0 else 0.5
 
-    def recursion(self, n_axes: int) -> Recursion:
-        """The arithmetic of a lane; see `LaneTracker.recursion`."""
+    def program(self, n_axes: int) -> LaneProgram:
+        """What a lane remembers, and its step; see `LaneTracker.program`."""
         rows = imm_rows(n_axes)
         start = self.start_probability
         memory = (1.0 - start, start, *(0.0,) * (rows.n_memory - PROBABILITIES))
-        return Recursion(rows, memory, lambda stride: step_function(self, rows, stride))
+        return LaneProgram(rows, memory, lambda stride: step_function(self, rows, stride))
 
     def maneuver_probability(self, state: TrackState) -> Array:
         """Probability that the target maneuvers.

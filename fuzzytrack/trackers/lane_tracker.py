@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.lanes.layout import Rows
-from fuzzytrack.lanes.runner import InfinitePlotError, Recursion, Runner
+from fuzzytrack.lanes.program import LaneProgram
+from fuzzytrack.lanes.runner import InfinitePlotError, Runner
 from fuzzytrack.trackers.compiled_step import Hop
 from fuzzytrack.trackers.result import TrackResult, checked_keep
 from fuzzytrack.trackers.state import Gains, TrackState, spread
@@ -30,7 +31,7 @@ _HOPS = 64
 
 
 class LaneTracker(ABC):
-    """A tracker that is given by its recursion; all of `fuzzytrack.Tracker` follows from it.
+    """A tracker that is given by its lane program; all of `fuzzytrack.Tracker` follows from it.
 
     It is immutable and hashable, and must pickle: make it a frozen dataclass.
 
@@ -51,7 +52,7 @@ class LaneTracker(ABC):
         return type(self).__name__
 
     @abstractmethod
-    def recursion(self, n_axes: int) -> Recursion:
+    def program(self, n_axes: int) -> LaneProgram:
         """The arithmetic of a lane.
 
         Parameters
@@ -307,7 +308,7 @@ def _runner_of_this(key: _Identity, n_axes: int) -> Runner:
 
 @lru_cache(maxsize=64)
 def _runner_of_equal(tracker: LaneTracker, n_axes: int) -> Runner:
-    return Runner(tracker.recursion(n_axes))
+    return Runner(tracker.program(n_axes))
 
 
 @dataclass(frozen=True)

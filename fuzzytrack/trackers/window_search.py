@@ -13,7 +13,7 @@ import numpy as np
 from fuzzytrack.gains import design
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.lanes.layout import Rows
-from fuzzytrack.lanes.runner import Recursion
+from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
@@ -85,11 +85,11 @@ class WindowSearch(LaneTracker):
         count = math.floor(1 / self.grid_step + 1e-9)
         return tuple(min(k * self.grid_step, 1.0) for k in range(1, count + 1))
 
-    def recursion(self, n_axes: int) -> Recursion:
-        """The α-β recursion with the search; see `LaneTracker.recursion`."""
+    def program(self, n_axes: int) -> LaneProgram:
+        """The α-β recursion with the search; see `LaneTracker.program`."""
         rows = Rows(n_axes, 5 * self.window + 2)
         memory = (*(0.0,) * (5 * self.window + 1), self.alpha)
-        return Recursion(rows, memory, lambda stride: _step(self, rows, stride))
+        return LaneProgram(rows, memory, lambda stride: _step(self, rows, stride))
 
 
 def _step(tracker: WindowSearch, rows: Rows, stride: int) -> Callable[[Any, int], None]:

@@ -78,8 +78,8 @@ def test_every_scheduler_of_ours_can_be_told():
         ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping"), "table")),
     ):
         for n_axes in (1, 2):
-            step = runner(tracker, n_axes).recursion.step(8)
-            again = type(tracker)(tracker.scheduler).recursion(n_axes).step(8)
+            step = runner(tracker, n_axes).program.step(8)
+            again = type(tracker)(tracker.scheduler).program(n_axes).step(8)
             assert fingerprint(step) == fingerprint(again) is not None
 
 

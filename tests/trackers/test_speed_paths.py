@@ -252,7 +252,7 @@ def test_scratch_begins_with_a_line_of_the_cache():
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_several_lanes_are_worked_on_at_once(name, dtype, monkeypatch, tmp_path):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-    code = entry_point(TRACKERS[name].recursion(1).steady(BLOCK, False), "vpixpp", dtype)
+    code = entry_point(TRACKERS[name].program(1).steady(BLOCK, False), "vpixpp", dtype)
     assembly = code._library.get_asm_str()
     kind = "pd" if dtype is np.float64 else "ps"
     assert f"mul{kind}" in assembly
