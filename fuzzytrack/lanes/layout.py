@@ -8,17 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BLOCK", "OUTPUTS", "Rows", "aligned"]
+__all__ = ["BLOCK", "GAINS", "OUTPUTS", "Rows", "aligned"]
 
 #: Lanes a block, and numbers between the rows of its buffer: whole pairs of vectors of 64 bytes,
 #: single precision included. A few rows of it stay clear of one another in the cache, where
 #: distances count by the remainder of 4,096 bytes.
 BLOCK = 288
 
+#: Names of the gains, in the order in which they lie in a lane.
+GAINS = ("alpha", "beta", "gamma")
+
 #: What a run can write down, in this order.
-OUTPUTS = (
-    "predicted", "filtered", "velocity", "acceleration", "innovation", "alpha", "beta", "gamma"
-)  # fmt: skip
+OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "innovation", *GAINS)
 
 
 @dataclass(frozen=True)
@@ -125,8 +126,8 @@ class Rows:
 
     def output(self, name: str) -> int:
         """First row of an output, by its name in a result."""
-        if name in ("alpha", "beta", "gamma"):
-            return self.gains + ("alpha", "beta", "gamma").index(name)
+        if name in GAINS:
+            return self.gains + GAINS.index(name)
         return int(getattr(self, "position" if name == "filtered" else name))
 
 

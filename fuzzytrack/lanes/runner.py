@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.kernels.compile import entry_point
-from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows, aligned
+from fuzzytrack.lanes.layout import BLOCK, GAINS, OUTPUTS, Rows, aligned
 from fuzzytrack.lanes.program import LaneProgram
 
 __all__ = ["InfinitePlotError", "Runner"]
@@ -27,8 +27,6 @@ COMPILE_ABOVE = 200_000
 THREADS_ABOVE = 500_000
 #: Parts of a job for each thread, so that none waits long for the last.
 PARTS = 4
-
-_GAINS = ("alpha", "beta", "gamma")
 
 
 class InfinitePlotError(ValueError):
@@ -183,7 +181,7 @@ class Runner:
             row = rows.output(name)
             column = row if row < n_state else row - skipped
             part = trace[:, :, column : column + rows.n_axes]
-            outputs[name] = trace[:, :, column].copy() if name in _GAINS else part.copy()
+            outputs[name] = trace[:, :, column].copy() if name in GAINS else part.copy()
         return after, outputs
 
     def _run_compiled(
@@ -198,7 +196,7 @@ class Runner:
         from fuzzytrack.lanes import block_loop as passage
 
         (n_steps, count, n_axes), dtype = plots.shape, plots.dtype.type
-        shapes = {name: plots.shape[:2] if name in _GAINS else plots.shape for name in keep}
+        shapes = {name: plots.shape[:2] if name in GAINS else plots.shape for name in keep}
         outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
         unwanted = np.empty(0, dtype)
         inputs = [_in_a_row(array, dtype) for array in (plots, dts, sigmas)]
@@ -207,7 +205,7 @@ class Runner:
             after.reshape(-1),
             tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
         )  # fmt: skip
-        results = bool({*keep} & {"innovation", *_GAINS})
+        results = bool({*keep} & {"innovation", *GAINS})
         # A single step is never steady: a stream does not stop to compile what it will not use.
         steady = self.steady_code(results, dtype) if n_steps > 1 else None
         step = self.step_code(dtype)

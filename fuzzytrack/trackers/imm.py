@@ -13,7 +13,7 @@ from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.imm_step import MODEL, PROBABILITIES, imm_rows, step_function
 from fuzzytrack.trackers.lane_tracker import LaneTracker
-from fuzzytrack.trackers.state import TrackState
+from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = ["MANEUVERS", "InteractingModels"]
 
@@ -203,8 +203,7 @@ class InteractingModels(LaneTracker):
 
     def _check(self, state: TrackState) -> None:
         n_axes = state.rows.n_axes if self.joint else 1
-        if state.rows != imm_rows(n_axes):
-            raise ValueError("state: it comes from a tracker that remembers other things")
+        check_rows(state, imm_rows(n_axes), self.name)
 
 
 def _probability(name: str, value: float) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import operator
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -11,21 +10,28 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.errors import DataError
-from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.layout import GAINS, Rows
+from fuzzytrack.lanes.plots import (
+    PlotLayout,
+    as_plots,
+    as_times,
+    check_single_precision,
+    infinite_plot,
+    plot_sigmas,
+    time_steps,
+)  # fmt: skip
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.runner import InfinitePlotError, Runner
 from fuzzytrack.trackers.compiled_step import Hop
 from fuzzytrack.trackers.result import TrackResult, checked_keep
-from fuzzytrack.trackers.state import Gains, TrackState, spread
+from fuzzytrack.trackers.state import Gains, TrackState, check_rows
 
 __all__ = ["LaneTracker", "announce", "runner"]
 
 
-GAINS = ("alpha", "beta", "gamma")
 #: Shapes of plots for which a tracker keeps a short way to the next state.
 _HOPS = 64
 
@@ -111,15 +117,16 @@ class LaneTracker(ABC):
         """
         wanted = checked_keep(keep)
         _check_threads(threads)
-        plots, times = _as_plots(z, dtype), _as_times(t, state)
-        layout = _Layout.of(plots, self.coupled)
+        before = _time_of(state)
+        plots, times = as_plots(z, dtype), as_times(t, before)
+        layout = PlotLayout.of(plots.shape, self.coupled)
         core = runner(self, layout.lane_axes)
-        _check_state(plots, state, core.rows)
-        dts = _time_steps(times, plots.shape, state)
-        deviation = self._sigma(sigma, plots)
+        _check_state(state, plots, core.rows, self.name)
+        dts = time_steps(times, plots.shape, before)
+        deviation = self._sigmas(sigma, plots)
         if plots.dtype == np.float32:
-            _check_single("t: a time step of", dts, times)
-            _check_single("sigma:", deviation, plots)
+            check_single_precision("t: a time step of", dts, times)
+            check_single_precision("sigma:", deviation, plots)
         sigmas = layout.to_lanes(deviation)
         try:
             after, raw = core(
@@ -131,7 +138,7 @@ class LaneTracker(ABC):
                 threads=threads,
             )
         except InfinitePlotError:
-            raise _infinite_plot(plots) from None
+            raise infinite_plot(plots) from None
         outputs: dict[str, Any] = {name: layout.from_lanes(raw[name]) for name in raw}
         if "gains" in wanted:
             outputs["gains"] = Gains(*(outputs.pop(name) for name in GAINS))
@@ -202,7 +209,7 @@ class LaneTracker(ABC):
         """Short way from states like this one, if the tracker is compiled."""
         if len(self._hops) >= _HOPS:
             self._hops.clear()
-        layout = _Layout.of(np.empty((0, *state.shape)), self.coupled)
+        layout = PlotLayout.of((0, *state.shape), self.coupled)
         core = runner(self, layout.lane_axes)
         if core.hop is None:
             return None
@@ -212,16 +219,17 @@ class LaneTracker(ABC):
     def _one_step(
         self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
     ) -> TrackState:
-        plots = _as_plots(z, np.float64)[None]
-        times = _as_times(np.asarray(t)[None], state)
-        layout = _Layout.of(plots, self.coupled)
+        before = _time_of(state)
+        plots = as_plots(z, np.float64)[None]
+        times = as_times(np.asarray(t)[None], before)
+        layout = PlotLayout.of(plots.shape, self.coupled)
         if np.isinf(plots).any():
-            raise _infinite_plot(plots)
+            raise infinite_plot(plots)
         core = runner(self, layout.lane_axes)
-        _check_state(plots, state, core.rows)
-        dts = layout.times_to_lanes(_time_steps(times, plots.shape, state))
+        _check_state(state, plots, core.rows, self.name)
+        dts = layout.times_to_lanes(time_steps(times, plots.shape, before))
         deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
-        sigmas = layout.to_lanes(self._sigma(deviation, plots))
+        sigmas = layout.to_lanes(self._sigmas(deviation, plots))
         shape = (layout.lanes, layout.lane_axes)
         lanes = core.fresh(layout.lanes) if state is None else state.lanes
         if core.native:
@@ -235,29 +243,8 @@ class LaneTracker(ABC):
             )
         return TrackState(times[0].copy(), plots.shape[1:], after, core.rows)
 
-    def _sigma(self, sigma: ArrayLike | None, plots: Array) -> Array:
-        if sigma is None:
-            if self.needs_sigma:
-                raise ValueError(
-                    f"sigma: {self.name} needs the standard deviation of the plots (m)"
-                )
-            return np.full((1,) * plots.ndim, np.nan)
-        values = np.asarray(sigma, dtype=np.float64)
-        try:
-            full = np.broadcast_to(values, plots.shape)
-        except ValueError:
-            raise ValueError(
-                f"sigma: shape {values.shape} does not broadcast with the plots' {plots.shape}"
-            ) from None
-        fits = np.isfinite(values) & (values > 0)
-        if not fits.all():
-            bad = ~np.broadcast_to(fits, plots.shape) & ~np.isnan(plots)
-            for place in np.argwhere(bad)[:1].tolist():
-                raise ValueError(
-                    "sigma must be positive and finite where there is a plot; at index "
-                    f"{tuple(place)} it is {full[tuple(place)]:g}"
-                )
-        return values.reshape((1,) * (plots.ndim - values.ndim) + values.shape)
+    def _sigmas(self, sigma: ArrayLike | None, plots: Array) -> Array:
+        return plot_sigmas(sigma, plots, self.name if self.needs_sigma else None)
 
 
 # Asked by identity first; comparing rule bases takes longer than a step.
@@ -311,81 +298,11 @@ def _runner_of_equal(tracker: LaneTracker, n_axes: int) -> Runner:
     return Runner(tracker.program(n_axes))
 
 
-@dataclass(frozen=True)
-class _Layout:
-    """How plots of a shape are laid out as lanes; see `fuzzytrack.lanes.runner`."""
-
-    shape: tuple[int, ...]
-    n_axes: int
-    coupled: bool
-
-    @classmethod
-    def of(cls, plots: Array, coupled: bool) -> _Layout:
-        if plots.ndim == 0:
-            raise ValueError("z: needs a time axis; got a single number")
-        n_axes = plots.shape[-1] if plots.ndim > 1 else 1
-        if n_axes == 0:
-            raise ValueError(f"z: needs at least one axis of space; got shape {plots.shape}")
-        return cls(plots.shape, n_axes, coupled)
-
-    @property
-    def lane_axes(self) -> int:
-        return self.n_axes if self.coupled else 1
-
-    @property
-    def lanes(self) -> int:
-        return math.prod(self.shape[1:]) // self.lane_axes
-
-    def to_lanes(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Array that broadcasts with the plots, to one that does with (n_steps, lanes, axes)."""
-        if math.prod(values.shape[1:]) == 1:
-            return values.reshape(-1, 1, 1)
-        # What is the same at all times is not repeated.
-        full = np.broadcast_to(values, (len(values), *self.shape[1:]))
-        return full.reshape(len(values), self.lanes, self.lane_axes)
-
-    def times_to_lanes(self, dts: Array) -> Array:
-        if dts.ndim == 1:
-            return dts[:, None]
-        flat = dts.reshape(len(dts), math.prod(dts.shape[1:]))
-        return np.repeat(flat, self.n_axes // self.lane_axes, axis=1)
-
-    def from_lanes(self, values: Array) -> Array:
-        """Output of the runner in the shape of the plots."""
-        if values.ndim == 3:
-            return values.reshape(self.shape)
-        return spread(values, self.shape, self.lane_axes)
-
-
-def _as_plots(z: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
-    kind = np.dtype(dtype)
-    if kind not in (np.dtype(np.float64), np.dtype(np.float32)):
-        raise ValueError(f"dtype must be float64 or float32, got {kind}")
-    if isinstance(z, np.ma.MaskedArray):
-        z = np.ma.filled(z.astype(np.float64), np.nan)
-    given = _real("z", z)
-    # What is too large for it is found as an infinite plot.
-    with np.errstate(over="ignore"):
-        return np.asarray(given, dtype=kind)
-
-
-def _as_times(t: ArrayLike, state: TrackState | None) -> Array:
-    times = np.asarray(_real("t", t), dtype=np.float64)
+def _time_of(state: TrackState | None) -> Array | np.float64 | None:
+    """Time of a state (s); None for new tracks."""
     if not (state is None or isinstance(state, TrackState)):
         raise TypeError(f"state must be a TrackState, got {type(state).__name__}")
-    if state is None or times.ndim != 1 or not np.ndim(state.time):
-        return times
-    # Tracks that had times of their own go on with common ones.
-    common = times.reshape(-1, *(1,) * np.ndim(state.time))
-    return np.broadcast_to(common, (len(times), *np.shape(state.time)))
-
-
-def _real(name: str, values: ArrayLike) -> NDArray[Any]:
-    given = np.asarray(values)
-    if given.dtype.kind in "mMc":
-        seconds = "seconds as " if name == "t" else ""
-        raise ValueError(f"{name}: needs {seconds}real numbers, got {given.dtype}")
-    return given
+    return None if state is None else state.time
 
 
 def _check_threads(threads: int | None) -> None:
@@ -393,58 +310,11 @@ def _check_threads(threads: int | None) -> None:
         raise ValueError(f"threads must be at least 1, got {threads}")
 
 
-def _infinite_plot(plots: Array) -> DataError:
-    place = tuple(int(k) for k in np.argwhere(np.isinf(plots))[0])
-    large = " (or too large for float32)" if plots.dtype == np.float32 else ""
-    return DataError(f"z: infinite plot{large} at index {place}; use NaN for a missed one")
-
-
-def _check_single(what: str, values: Array, needed: NDArray[Any]) -> None:
-    """Refuse what is 0 or infinite in single precision, where it is needed."""
-    with np.errstate(over="ignore", under="ignore"):
-        single = values.astype(np.float32)
-    lost = (values > 0) & np.isfinite(values) & ~((single > 0) & np.isfinite(single))
-    if lost.any():
-        lost = lost & ~np.isnan(needed)
-    if lost.any():
-        value = np.broadcast_to(values, lost.shape)[lost][0]
-        raise ValueError(f"{what} {value:g} is out of the range of float32; use float64")
-
-
-def _check_state(plots: Array, state: TrackState | None, rows: Rows) -> None:
+def _check_state(state: TrackState | None, plots: Array, rows: Rows, name: str) -> None:
     if state is None:
         return
     if state.shape != plots.shape[1:]:
         raise ValueError(
             f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape {state.shape}"
         )
-    if state.rows != rows:
-        raise ValueError("state: it comes from a tracker that remembers other things")
-
-
-def _time_steps(times: Array, shape: tuple[int, ...], state: TrackState | None) -> Array:
-    """T of every step, shape of the times; 0 for the first step of a new track."""
-    if times.shape not in (shape[:1], shape[:-1]):
-        own = f" or {shape[:-1]}" if len(shape) > 2 else ""
-        raise ValueError(
-            f"t: shape {times.shape} does not fit plots of shape {shape}; {shape[:1]}{own} does"
-        )
-    if not np.isfinite(times).all():
-        place = int(np.argwhere(~np.isfinite(times))[0][0])
-        raise DataError(f"t: time at index {place} is not finite")
-    before = times[:1] if state is None else np.broadcast_to(state.time, times.shape[1:])[None]
-    # In place: times of each track's own take as much memory as its plots.
-    dts = np.empty(times.shape)
-    np.subtract(times[:1], before, out=dts[:1])
-    np.subtract(times[1:], times[:-1], out=dts[1:])
-    bad = dts <= 0
-    if state is None:
-        bad[:1] = False
-    if bad.any():
-        step, *track = (int(k) for k in np.argwhere(bad)[0])
-        where = (step, *track) if track else step
-        raise DataError(
-            f"t: times must increase; the one at index {where} ({times[where]} s) is not later "
-            "than the one before"
-        )
-    return dts
+    check_rows(state, rows, name)

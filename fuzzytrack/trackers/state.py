@@ -9,8 +9,9 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.plots import gains_as_plots
 
-__all__ = ["Gains", "TrackState"]
+__all__ = ["Gains", "TrackState", "check_rows"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +97,27 @@ class TrackState:
     def gains(self) -> Gains:
         """Gains of the last step."""
         rows = self.lanes[self.rows.gains : self.rows.gains + 3]
-        return Gains(*(spread(row, self.shape, self.rows.n_axes) for row in rows))
+        return Gains(*(gains_as_plots(row, self.shape, self.rows.n_axes) for row in rows))
 
 
-def spread(gains: Array, shape: tuple[int, ...], lane_axes: int) -> Array:
-    """Gains of lanes in the shape of the plots; those that axes share become repeated views."""
-    if lane_axes == 1:
-        return gains.reshape(shape)
-    return np.broadcast_to(gains.reshape(*shape[:-1], 1), shape)
+def check_rows(state: TrackState, rows: Rows, name: str) -> None:
+    """Refuse a state whose lanes are laid out in another way than those of a tracker.
+
+    Parameters
+    ----------
+    state : TrackState
+    rows : Rows
+        Layout of the tracker's lanes.
+    name : str
+        Name of the tracker.
+
+    Raises
+    ------
+    ValueError
+        If the layouts differ.
+    """
+    if state.rows != rows:
+        raise ValueError(
+            f"state: its lanes are laid out for another tracker than {name} with these settings; "
+            "give a state that the same tracker returned"
+        )

@@ -214,7 +214,7 @@ def test_compiled_streams_check_what_they_are_given():
     for message, (z, t, sigma) in cases.items():
         with pytest.raises(ValueError, match=message):
             FIXED.step(state, z, t, sigma)
-    with pytest.raises(ValueError, match="remembers other things"):
+    with pytest.raises(ValueError, match="state: its lanes are laid out for another tracker"):
         FUZZY.step(state, [0.0, 0.0], 2.0)
     expected = FIXED.step(state, [3.0, 4.0], 2.0)
     spread_out = np.array([[3.0, 4.0], [0.0, 0.0]]).T[:, 0]
