@@ -11,13 +11,12 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.pieces import Piece
+from fuzzytrack.lanes.layout import GAINS
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 from fuzzytrack.trackers.result import checked_keep
 from fuzzytrack.trackers.track_store import Slots, TrackStore
 
 __all__ = ["OpenTracks", "TrackedPiece", "run_iter"]
-
-_GAINS = ("alpha", "beta", "gamma")
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +143,7 @@ class OpenTracks:
         DataError, ValueError
             As for `run_iter`; the tracks are then of no more use.
         """
-        names = [name for kept in self._keep for name in (_GAINS if kept == "gains" else (kept,))]
+        names = [name for kept in self._keep for name in (GAINS if kept == "gains" else (kept,))]
         outputs = {name: np.empty(piece.plots.shape) for name in names}
         if len(piece.time):
             _check_finite(piece)
@@ -185,7 +184,7 @@ class OpenTracks:
                 piece.time[places], piece.plots[places], self.sigma, state=state, keep=self._keep
             )
             for name, values in outputs.items():
-                values[places] = getattr(result.gains if name in _GAINS else result, name)
+                values[places] = getattr(result.gains if name in GAINS else result, name)
             assert result.state is not None
             if state is None:
                 begun = store.add(result.state)
