@@ -10,7 +10,7 @@ that of a Kalman filter.
 
 from __future__ import annotations
 
-__all__ = ["NEW", "ONE_PLOT", "RUNNING", "correct_ca", "correct_cv", "predict_ca"]
+__all__ = ["NEW", "ONE_PLOT", "RUNNING", "correct_ca", "correct_cv", "predict_ca", "predict_cv"]
 
 #: Phase of a track, as the memory of a scheduler holds it: no plot yet; position known, but not
 #: velocity; both known.
@@ -20,6 +20,15 @@ NEW, ONE_PLOT, RUNNING = 0.0, 1.0, 2.0
 Covariance2 = tuple[float, float, float]
 #: P₁₁, P₁₂, P₁₃, P₂₂, P₂₃, P₃₃
 Covariance3 = tuple[float, float, float, float, float, float]
+
+
+def predict_cv(p11: float, p12: float, p22: float, dt: float, g: float, q: float) -> Covariance2:
+    """ΦPΦᵀ + GGᵀq of constant velocity over a time `dt`, with G = (g, dt); `g` is dt²/2."""
+    return (
+        p11 + dt * (2.0 * p12 + dt * p22) + q * g * g,
+        p12 + dt * p22 + q * g * dt,
+        p22 + q * dt * dt,
+    )
 
 
 def predict_ca(

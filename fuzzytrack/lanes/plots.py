@@ -158,9 +158,10 @@ def time_steps(times: Array, shape: tuple[int, ...], before: ArrayLike | None) -
     if bad.any():
         step, *track = (int(k) for k in np.argwhere(bad)[0])
         where = (step, *track) if track else step
+        earlier = "the one before" if step else f"that of the state ({start[where]} s)"
         raise DataError(
             f"t: times must increase; the one at index {where} ({times[where]} s) is not later "
-            "than the one before"
+            f"than {earlier}"
         )
     return dts
 

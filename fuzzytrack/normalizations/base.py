@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -59,6 +60,13 @@ class Normalization(ABC):
         same plot; at steps whose gains are dropped too, if the normalisation sees every step.
         """
         return None
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of the position predicted over a time; NaN unless overridden.
+
+        See `fuzzytrack.schedulers.base.GainScheduler.prediction_variance`.
+        """
+        return math.nan
 
 
 normalizations: Registry[type[Normalization]] = Registry(

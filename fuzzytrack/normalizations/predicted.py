@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from fuzzytrack.gains.joseph import NEW, ONE_PLOT, RUNNING, correct_ca, predict_ca
 from fuzzytrack.kernels.language import Memory
@@ -65,6 +67,12 @@ class Predicted(Normalization):
             return signals, (phase, p11, p12, p13, p22, p23, p33, span + dt, last)
 
         return predicted
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of a predicted position; see `Normalization.prediction_variance`."""
+        phase, p11, p12, p13, p22, p23, p33, _, _ = memory
+        p11 = predict_ca(p11, p12, p13, p22, p23, p33, dt, 0.5 * dt * dt)[0]
+        return np.where(phase == RUNNING, p11, np.nan)
 
     def feedback(self, n_axes: int) -> Feedback:
         """Correct the covariance for the gains; see `Normalization.feedback`."""

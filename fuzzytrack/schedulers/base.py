@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -35,6 +36,8 @@ class GainScheduler(ABC):
         Whether the kernel also follows the steps of a track that need no gains; see `kernel`.
     uses_acceleration : bool
         Whether gamma can be other than 0. Without acceleration a tracker has less to do.
+    sigma_w : float or None
+        Standard deviation (m) that stands for that of every plot, if the scheduler has one.
     """
 
     source: ClassVar[str] = ""
@@ -42,6 +45,7 @@ class GainScheduler(ABC):
     needs_sigma: bool = False
     sees_every_step: bool = False
     uses_acceleration: bool = True
+    sigma_w: float | None = None
 
     @abstractmethod
     def kernel(self, n_axes: int) -> Kernel:
@@ -83,6 +87,29 @@ class GainScheduler(ABC):
     def initial_memory(self, n_axes: int) -> Memory:
         """Memory of a new track; empty unless overridden."""
         return ()
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of the position predicted over a time (m²); NaN unless overridden.
+
+        For schedulers that keep a covariance: what `fuzzytrack.Tracker.predict` tells of it. It is
+        asked for many tracks at once, with arrays in place of numbers, so it has arithmetic and
+        `numpy.where` in it, and no ``if``.
+
+        Parameters
+        ----------
+        memory : ndarray, shape (n_memory, lanes)
+            Memories side by side, each as the kernel returned it after the last step of a track,
+            or of one of its axes.
+        dt : float or ndarray, shape (lanes,)
+            Time since that step (s), > 0.
+
+        Returns
+        -------
+        ndarray or float
+            The variance without that of the plot to come, shape (lanes,), or of a coupled
+            scheduler (n_axes, lanes); NaN where it is not known yet.
+        """
+        return math.nan
 
 
 schedulers: Registry[type[GainScheduler]] = Registry(

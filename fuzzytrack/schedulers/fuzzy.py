@@ -124,6 +124,11 @@ class FuzzyScheduler(GainScheduler):
         own = self.normalization.initial_memory(n_axes)
         return (0.0, *own) if self.opens else own
 
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of a predicted position; see `GainScheduler.prediction_variance`."""
+        own = memory[1:] if self.opens else memory
+        return self.normalization.prediction_variance(own, dt)
+
     def kernel(self, n_axes: int) -> Kernel:
         """Normalise, infer, convert to gains; see `GainScheduler.kernel`."""
         normalize = self.normalization.kernel(n_axes)

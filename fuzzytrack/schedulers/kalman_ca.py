@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from fuzzytrack.gains.joseph import NEW, ONE_PLOT, RUNNING, correct_ca, predict_ca
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
@@ -118,3 +120,10 @@ class KalmanCA(GainScheduler):
             return k1, k2 * dt, 2.0 * k3 * dt * dt, 1.0, new_memory
 
         return kalman_ca
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of a predicted position; see `GainScheduler.prediction_variance`."""
+        phase, p11, p12, p13, p22, p23, p33, _ = memory
+        g = 0.5 * dt * dt
+        p11 = predict_ca(p11, p12, p13, p22, p23, p33, dt, g)[0] + self.sigma_v**2 * g * g
+        return np.where(phase == RUNNING, p11, np.nan)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from fuzzytrack.gains.checks import nonnegative, positive
-from fuzzytrack.gains.joseph import NEW, ONE_PLOT, RUNNING, correct_cv
+from fuzzytrack.gains.joseph import NEW, ONE_PLOT, RUNNING, correct_cv, predict_cv
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
 
 __all__ = ["KalmanCV"]
@@ -100,9 +102,7 @@ class KalmanCV(GainScheduler):
             span = span + dt
 
             g = 0.5 * dt * dt
-            p11 = p11 + dt * (2.0 * p12 + dt * p22) + q * g * g
-            p12 = p12 + dt * p22 + q * g * dt
-            p22 = p22 + q * dt * dt
+            p11, p12, p22 = predict_cv(p11, p12, p22, dt, g, q)
 
             s = p11 + r
             unknown = phase == ONE_PLOT
@@ -122,3 +122,9 @@ class KalmanCV(GainScheduler):
             return k1, k2 * dt, 0.0, 1.0, (after, n11, n12, n22, span)
 
         return kalman_cv
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of a predicted position; see `GainScheduler.prediction_variance`."""
+        phase, p11, p12, p22, _ = memory
+        p11, _, _ = predict_cv(p11, p12, p22, dt, 0.5 * dt * dt, self.sigma_v**2)
+        return np.where(phase == RUNNING, p11, np.nan)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
@@ -78,6 +78,11 @@ class AlphaBetaTracker(LaneTracker):
         return self.scheduler.needs_sigma
 
     @property
+    def sigma_w(self) -> float | None:  # type: ignore[override]
+        """Standard deviation that stands for that of every plot, as the scheduler says (m)."""
+        return self.scheduler.sigma_w
+
+    @property
     def name(self) -> str:
         """Name for messages: that of the scheduler."""
         return type(self.scheduler).__name__
@@ -93,3 +98,7 @@ class AlphaBetaTracker(LaneTracker):
             lambda stride: step_function(scheduler, rows, two_point, stride),
             lambda stride, results: steady_function(scheduler, rows, stride, results),
         )
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of a predicted position; see `LaneTracker.prediction_variance`."""
+        return self.scheduler.prediction_variance(memory, dt)

@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 from numpy.typing import ArrayLike
 
 from fuzzytrack.plugins import Registry
+from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import TrackState
 
@@ -30,6 +31,12 @@ class Tracker(Protocol):
         self, state: TrackState, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None
     ) -> TrackState:
         """State after one more plot."""
+        ...
+
+    def predict(
+        self, state: TrackState, t: ArrayLike, sigma: ArrayLike | None = None
+    ) -> Prediction:
+        """Where a track is expected at a later time; see `fuzzytrack.AlphaBetaTracker.predict`."""
         ...
 
 

@@ -26,6 +26,7 @@ from fuzzytrack.lanes.plots import (
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.runner import InfinitePlotError, Runner
 from fuzzytrack.trackers.compiled_step import Hop
+from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult, checked_keep
 from fuzzytrack.trackers.state import Gains, TrackState, check_rows
 
@@ -47,10 +48,13 @@ class LaneTracker(ABC):
         Whether a lane is a whole track, and not one of its axes.
     needs_sigma : bool
         Whether plots need a standard deviation.
+    sigma_w : float or None
+        Standard deviation (m) that stands for that of every plot, if the tracker has one.
     """
 
     coupled: bool = False
     needs_sigma: bool = False
+    sigma_w: float | None = None
 
     @property
     def name(self) -> str:
@@ -182,6 +186,78 @@ class LaneTracker(ABC):
         after = None if hop is None else hop(state, z, t, sigma)
         return self._one_step(state, z, t, sigma) if after is None else after
 
+    def predict(
+        self, state: TrackState, t: ArrayLike, sigma: ArrayLike | None = None
+    ) -> Prediction:
+        """Where a track, or a batch of tracks, is expected at a later time; the state stays.
+
+        Parameters
+        ----------
+        state : TrackState
+            From `start`, `step` or a result.
+        t : array_like, shape () or (...batch)
+            Time (s), common or each track's own. It must be later than that of the state: a plot
+            of the same time could not be used by `step`.
+        sigma : array_like, optional
+            Standard deviation of the plots to come (m), broadcast against the positions, for
+            `innovation_variance`; the tracker's `sigma_w` unless given.
+
+        Returns
+        -------
+        Prediction
+            Position, velocity and acceleration are those of a `step` with a missed plot, to the
+            last bit; variances are NaN if the tracker keeps no covariance.
+
+        Raises
+        ------
+        DataError, ValueError
+            As for `step`.
+
+        Examples
+        --------
+        >>> from fuzzytrack import AlphaBetaTracker
+        >>> from fuzzytrack.schedulers import KalmanCV
+        >>> tracker = AlphaBetaTracker(KalmanCV(sigma_v=1.0, sigma_w=10.0))
+        >>> state = tracker.run([0, 1, 2], [0, 31, 60]).state
+        >>> prediction = tracker.predict(state, 4)
+        >>> round(float(prediction.position), 2), round(float(prediction.velocity), 2)
+        (120.33, 30.0)
+        >>> round(float(prediction.innovation_variance), 1)
+        590.2
+        """
+        coasted = self.step(state, np.full(state.shape, np.nan), t, 1.0)
+        variance = self._position_variance(state, coasted.time)
+        if sigma is not None:
+            noise = self._sigmas(sigma, np.zeros((1, *state.shape)))[0]
+        else:
+            noise = np.array(np.nan if self.sigma_w is None else self.sigma_w)
+        return Prediction(
+            coasted.time,
+            coasted.position,
+            coasted.velocity,
+            coasted.acceleration,
+            variance,
+            np.asarray(variance + noise**2),
+        )
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of the position predicted over a time (m²); NaN unless overridden.
+
+        Parameters
+        ----------
+        memory : ndarray, shape (n_memory, lanes)
+            Memories of lanes that have started, each after its last step.
+        dt : ndarray, shape (lanes,) or (1,)
+            Time since that step (s), > 0.
+
+        Returns
+        -------
+        ndarray or float
+            The variance without that of the plot to come, shape (n_axes, lanes) or, where a lane
+            is an axis or its axes have it in common, (lanes,).
+        """
+        return math.nan
+
     def compile(self, n_axes: int = 1) -> None:
         """Compile now what `run` compiles when a job is large, and make `step` run compiled.
 
@@ -242,6 +318,18 @@ class LaneTracker(ABC):
                 np.broadcast_to(sigmas[0], shape).tolist(),
             )
         return TrackState(times[0].copy(), plots.shape[1:], after, core.rows)
+
+    def _position_variance(self, state: TrackState, time: Array | np.float64) -> Array:
+        """Variance of the position predicted for a later time, shaped as a plot."""
+        layout, rows = PlotLayout.of((0, *state.shape), self.coupled), state.rows
+        (dts,) = layout.times_to_lanes(np.asarray(time - state.time)[None])
+        # Of lanes that have not started it may be anything.
+        with np.errstate(over="ignore", invalid="ignore"):
+            variance = self.prediction_variance(state.lanes[rows.memory : rows.state], dts)
+        running = state.lanes[rows.plots] >= 2.0
+        lanes = np.where(running, variance, np.nan)
+        by_axis = np.broadcast_to(lanes, (rows.n_axes, layout.lanes))
+        return np.array(by_axis.T).reshape(state.shape)
 
     def _sigmas(self, sigma: ArrayLike | None, plots: Array) -> Array:
         return plot_sigmas(sigma, plots, self.name if self.needs_sigma else None)

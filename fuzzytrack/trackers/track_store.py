@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["Slots", "TrackStore"]
@@ -215,6 +216,29 @@ class TrackStore:
         state = self.tracker.step(self.gather(slots), z, t, sigma)
         self.scatter(slots, state)
         return state
+
+    def predict(self, slots: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> Prediction:
+        """Where some tracks are expected at a later time; all stay as they are.
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+        t : array_like, shape () or (n,)
+            Times (s), common or each track's own, later than those of the tracks.
+        sigma : array_like, optional
+            Standard deviation of the plots to come (m), broadcast against shape (n, n_axes).
+
+        Returns
+        -------
+        Prediction
+
+        Raises
+        ------
+        DataError, ValueError
+            As for `step`.
+        """
+        return self.tracker.predict(self.gather(slots), t, sigma)
 
     def _put(self, slots: Slots, state: TrackState) -> None:
         _, kept, per_track = self._numbers.shape
