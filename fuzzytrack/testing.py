@@ -8,15 +8,22 @@ from __future__ import annotations
 import math
 import pickle
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.normalizations.predicted import Predicted
 from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
+from fuzzytrack.schedulers.kalman_ca import KalmanCA
+from fuzzytrack.schedulers.kalman_cv import KalmanCV
 from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.lane_tracker import LaneTracker, runner
+from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import TrackState
 
@@ -66,8 +73,10 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     """Check that a tracker keeps the contract of `fuzzytrack.trackers.base.Tracker`.
 
     Checked are: shapes of one track and of batches, coasting on missed plots, irregular times,
-    that a batch equals its tracks one by one, that streaming equals `run` to the last bit, pickling
-    of the state in the middle of a track, determinism, that inputs are left alone, that bad input
+    that a batch equals its tracks one by one, that streaming equals `run` to the last bit, that
+    `predict` equals a step with a missed plot and tells the innovation variance of
+    `fuzzytrack.trackers.covariance.track_covariance` where that knows the model, pickling of the
+    state in the middle of a track, determinism, that inputs are left alone, that bad input
     raises ValueError, and of a `fuzzytrack.trackers.lane_tracker.LaneTracker` that it gives the
     same to the last bit when compiled.
 
@@ -82,7 +91,7 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     AssertionError
         If a promise is broken; says which.
     """
-    _expect(isinstance(tracker, Tracker), "must have run, start and step")
+    _expect(isinstance(tracker, Tracker), "must have run, start, step and predict")
     _check_behaviour(tracker, seed)
     if isinstance(tracker, LaneTracker):
         _check_compiled(tracker, seed)
@@ -95,6 +104,8 @@ def _check_behaviour(tracker: Tracker, seed: int) -> None:
     _check_coasting(tracker, times, plots)
     _check_one_by_one(tracker, times, plots)
     _check_streaming(tracker, times, plots)
+    _check_prediction(tracker, times, plots)
+    _check_innovation_variance(tracker, times, plots)
     _check_errors(tracker, times, plots[:, 0])
 
 
@@ -197,6 +208,91 @@ def _check_streaming(tracker: Tracker, times: Array, plots: Array) -> None:
             _expect_same(now, _arrays(state), f"streaming must equal run (step {k})")
 
 
+def _check_prediction(tracker: Tracker, times: Array, plots: Array) -> None:
+    own_delay = np.linspace(0.0, 1.0, _TRACKS)
+    for k in (1, 2, 3, 10, _STEPS - 1):
+        for z, delay in ((plots[:, 0], 0.0), (plots, 0.0), (plots, own_delay)):
+            state, t = tracker.run(times[:k], z[:k], _SIGMA).state, times[k] + delay
+            assert state is not None
+            before = pickle.dumps(state)
+            found = tracker.predict(state, t, _SIGMA)
+            _expect(pickle.dumps(state) == before, "predict must leave the state as it is")
+            coasted = tracker.step(state, np.full(z[k].shape, np.nan), t, _SIGMA)
+            for name in ("time", "position", "velocity", "acceleration"):
+                _expect(
+                    np.array_equal(getattr(found, name), getattr(coasted, name), equal_nan=True),
+                    f"predict must equal a step with a missed plot: {name} differs (step {k})",
+                )
+            _check_variances(found, z[k].shape)
+    _check_late_predictions(tracker, tracker.start(plots[0], 5.0, _SIGMA))
+
+
+def _check_late_predictions(tracker: Tracker, state: TrackState) -> None:
+    for t in (5.0, 4.0, math.nan):
+        _expect_refused(
+            partial(tracker.predict, state, t, _SIGMA),
+            "to predict for a time that is not later than that of the state",
+        )
+
+
+def _check_variances(found: Prediction, shape: tuple[int, ...]) -> None:
+    variance, s = found.position_variance, found.innovation_variance
+    for name, array in (("position_variance", variance), ("innovation_variance", s)):
+        _expect(
+            array.shape == shape,
+            f"{name} must have the shape {shape} of the plots, has {array.shape}",
+        )
+    _expect(
+        np.array_equal(s, variance + _SIGMA**2, equal_nan=True),
+        "innovation_variance must be position_variance plus the variance of the plot",
+    )
+    _expect(not (variance < 0).any(), "position_variance must not be negative")
+
+
+def _check_innovation_variance(tracker: Tracker, times: Array, plots: Array) -> None:
+    model = _model(tracker)
+    if model is None:
+        return
+    # A tracker with a noise of its own does not see that of the plots.
+    sigma = getattr(tracker, "sigma_w", None) or _SIGMA
+    known = track_covariance(tracker.run(times, plots, sigma), sigma, **model).innovation_variance
+    state = tracker.start(plots[0], times[0], sigma)
+    for k in range(1, _STEPS):
+        found = tracker.predict(state, times[k], sigma).innovation_variance
+        there = ~np.isnan(known[k])
+        _expect(
+            bool((abs(found[there] - known[k][there]) <= 1e-12 * known[k][there]).all()),
+            f"innovation_variance must be that of track_covariance (step {k})",
+        )
+        state = tracker.step(state, plots[k], times[k], sigma)
+
+
+def _model(tracker: Tracker) -> dict[str, Any] | None:
+    """Arguments of `track_covariance` for the model behind a tracker's variances, if they fit."""
+    if not isinstance(tracker, AlphaBetaTracker):
+        return None
+    scheduler, two_point = tracker.scheduler, tracker.start_mode == "two-point"
+    if isinstance(scheduler, FuzzyScheduler) and isinstance(scheduler.normalization, Predicted):
+        still = 0.0 if scheduler.uses_acceleration else None
+        return {"sigma_v": 0.0, "acceleration_sigma": still} if two_point else None
+    # What is presumed of a new track's velocity is for the start that uses it.
+    if not isinstance(scheduler, KalmanCV | KalmanCA) or (two_point and scheduler.velocity_sigma):
+        return None
+    return {
+        "sigma_v": scheduler.sigma_v,
+        "velocity_sigma": scheduler.velocity_sigma,
+        "acceleration_sigma": getattr(scheduler, "acceleration_sigma", None),
+    }
+
+
+def _expect_refused(call: Callable[[], Any], what: str) -> None:
+    try:
+        call()
+    except ValueError:
+        return
+    raise AssertionError(f"{what} must raise ValueError")
+
+
 def _check_errors(tracker: Tracker, times: Array, plots: Array) -> None:
     infinite, repeated = plots.copy(), times.copy()
     infinite[3, 0] = np.inf
@@ -208,11 +304,7 @@ def _check_errors(tracker: Tracker, times: Array, plots: Array) -> None:
         "times of another length": lambda: tracker.run(times[:-1], plots, _SIGMA),
     }
     for what, call in bad.items():
-        try:
-            call()
-        except ValueError:
-            continue
-        raise AssertionError(f"{what} must raise ValueError")
+        _expect_refused(call, what)
 
 
 def _check_same_run(one: Tracker, other: Tracker, seed: int) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
-from fuzzytrack.schedulers import GainScheduler
+from fuzzytrack.schedulers import GainScheduler, KalmanCV
 from fuzzytrack.testing import check_scheduler, check_tracker
 
 
@@ -123,6 +123,10 @@ class Faulty:
         new = self.good.step(state, z, t, sigma)
         return self.changes.get("step", lambda state: state)(new)
 
+    def predict(self, state, t, sigma=None):
+        found = self.good.predict(state, t, sigma)
+        return self.changes.get("predict", lambda found, state: found)(found, state)
+
 
 def spoil_input(result, t, z):
     if len(z) > 2:
@@ -147,9 +151,36 @@ def drift(state):
     return replace(state, lanes=state.lanes + 1e-9)
 
 
+def spoil_state(found, state):
+    state.lanes[0] += 1.0
+    return found
+
+
+def hurry(found, state):
+    return replace(found, velocity=found.velocity * (1 + 1e-15))
+
+
+def boast(found, state):
+    return replace(found, innovation_variance=np.full(found.position.shape, 100.0))
+
+
+def one_for_all(found, state):
+    return replace(found, position_variance=np.array(1.0))
+
+
+def less_than_nothing(found, state):
+    variance = np.full(found.position.shape, -1.0)
+    return replace(found, position_variance=variance, innovation_variance=variance + 100.0)
+
+
 @pytest.mark.parametrize(
     ("changes", "promise"),
     [
+        ({"predict": spoil_state}, "predict must leave the state as it is"),
+        ({"predict": hurry}, "equal a step with a missed plot: velocity differs"),
+        ({"predict": boast}, "must be position_variance plus the variance of the plot"),
+        ({"predict": one_for_all}, r"position_variance must have the shape \(2,\)"),
+        ({"predict": less_than_nothing}, "position_variance must not be negative"),
         ({"run": spoil_input}, "run must leave its inputs as they are|same track"),
         ({"run": shift}, "batch must equal its tracks one by one|must be the prediction"),
         ({"run": narrow}, "velocity must have the shape"),
@@ -175,6 +206,31 @@ def test_bad_input_must_not_be_swallowed():
         check_tracker(Accepting())
 
 
-def test_a_tracker_has_three_verbs():
-    with pytest.raises(AssertionError, match="must have run, start and step"):
+class Timeless(Faulty):
+    """Predicts for times gone by, too."""
+
+    def predict(self, state, t, sigma=None):
+        return super().predict(state, np.where(t > state.time, t, state.time + 1.0), sigma)
+
+
+def test_times_gone_by_must_be_refused():
+    with pytest.raises(AssertionError, match=r"a time that is not later .* must raise ValueError"):
+        check_tracker(Timeless())
+
+
+class Confident(KalmanCV):
+    """Presumes less noise than there is when it is asked for a prediction."""
+
+    def prediction_variance(self, memory, dt):
+        return 0.99 * super().prediction_variance(memory, dt)
+
+
+def test_a_variance_must_be_that_of_the_covariance():
+    tracker = ft.AlphaBetaTracker(Confident(1.0))
+    with pytest.raises(AssertionError, match="must be that of track_covariance"):
+        check_tracker(tracker)
+
+
+def test_a_tracker_has_four_verbs():
+    with pytest.raises(AssertionError, match="must have run, start, step and predict"):
         check_tracker(ft.FixedGains(0.5, 0.2))
