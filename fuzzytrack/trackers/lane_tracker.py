@@ -256,7 +256,7 @@ class LaneTracker(ABC):
             The variance without that of the plot to come, shape (n_axes, lanes) or, where a lane
             is an axis or its axes have it in common, (lanes,).
         """
-        return math.nan
+        return np.nan
 
     def compile(self, n_axes: int = 1) -> None:
         """Compile now what `run` compiles when a job is large, and make `step` run compiled.

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.prediction import Prediction
-from fuzzytrack.trackers.state import TrackState
+from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = ["Slots", "TrackStore"]
 
@@ -284,5 +284,4 @@ class TrackStore:
                 f"state: shape {state.shape} does not fit; {count} tracks of {self.n_axes} axes "
                 f"have {(count, *alone)}"
             )
-        if state.rows != self._rows:
-            raise ValueError("state: it comes from another kind of tracker than that of the store")
+        check_rows(state, self._rows, type(self.tracker).__name__)

@@ -330,7 +330,7 @@ def test_bad_input_is_named(times, plots, sigma, error, message):
 def test_a_state_goes_on_later_and_with_plots_of_its_shape():
     tracker = ft.AlphaBetaTracker(FIXED)
     state = tracker.start([0.0, 0.0], 5.0)
-    with pytest.raises(ft.DataError, match="not later than the one before"):
+    with pytest.raises(ft.DataError, match=r"not later than that of the state \(5.0 s\)"):
         tracker.step(state, [0.0, 0.0], 5.0)
     with pytest.raises(ValueError, match="do not go on from a state of shape"):
         tracker.step(state, [0.0, 0.0, 0.0], 6.0)

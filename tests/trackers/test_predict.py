@@ -27,9 +27,9 @@ outputs:
     sets: {low: {trimf: [0.1, 0.15, 0.2]}, high: {trimf: [0.2, 0.4, 0.5]}}
 operators: {and: product, or: sum, defuzzification: centroid}
 rules:
-  - if E is n then alpha is low and beta is high
-  - if E is p then alpha is high and beta is low
-  - if E is q then alpha is high and beta is high
+  - {if: {E: n}, then: {alpha: low, beta: high}}
+  - {if: {E: p}, then: {alpha: high, beta: low}}
+  - {if: {E: q}, then: {alpha: high, beta: high}}
 scheduler: {normalization: predicted, gains: direct%s}
 """
 

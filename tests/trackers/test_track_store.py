@@ -223,7 +223,7 @@ def test_states_that_do_not_fit():
     ):
         with pytest.raises(ValueError, match=rf"state: shape {shape} does not fit; 1 tracks of 2"):
             store.add(FIXED.start(z, 0.0))
-    with pytest.raises(ValueError, match="comes from another kind of tracker"):
+    with pytest.raises(ValueError, match="laid out for another tracker than AlphaBetaTracker"):
         store.add(TRACKERS["kalman-cv:sigma_v=1"].start([[1.0, 2.0]], 0.0, 1.0))
     slots = started(store, [[1.0, 2.0], [3.0, 4.0]])
     with pytest.raises(ValueError, match="2 tracks of 2 axes have"):
