@@ -114,6 +114,16 @@ def test_every_module_that_the_docs_name_exists():
                 assert f"{where}/{name}" in files | folders, f"{where} has no module {name}"
 
 
+def test_the_reference_has_public_modules_only():
+    pages = [path.read_text() for path in (ARCHITECTURE.parent / "api").glob("*.rst")]
+    named = re.findall(r"^   (fuzzytrack[\w.]+)$", "\n".join(pages), re.MULTILINE)
+    assert set(named) <= set(GRAPH)
+    assert len(named) == len(set(named))
+    machinery = {module for module in named if room_of(module) in {"cli", "kernels", "lanes"}}
+    # A plug-in that is a tracker gives one.
+    assert machinery == {"fuzzytrack.lanes.program"}
+
+
 # -------------------------------------------------------------------- the checks themselves
 
 
