@@ -5,7 +5,7 @@ Kim & Lee: gains from the innovation's variance
 *B.-D. Kim and J.-S. Lee, Adaptive α-β tracker for TWS radar system.*
 
 **What the paper claims.** The mean square of the last twelve innovations tells how hard the target
-manoeuvres. Put through the tracking index it gives gains that follow a target of ±5 g, where the
+maneuvers. Put through the tracking index it gives gains that follow a target of ±5 g, where the
 conventional tracker lags far behind.
 
 **What we found.** The claim holds, against a conventional tracker that expects 0.5 g. One that
@@ -26,12 +26,12 @@ from fuzzytrack.papers import reproduce
 
 found = reproduce("kim-lee", runs=200)
 for name in ("fixed, σ_v = 5", "fixed, σ_v = 5 g", "published, σ_Q = 5", "default"):
-    quiet, hard = (found.ours(f"{name}: position, {when} (m)") for when in ("quiet", "manoeuvre"))
-    print(f"{name:20}  RMSE {quiet:4.0f} m in quiet flight, {hard:4.0f} m in manoeuvres")
+    quiet, hard = (found.ours(f"{name}: position, {when} (m)") for when in ("quiet", "maneuver"))
+    print(f"{name:20}  RMSE {quiet:4.0f} m in quiet flight, {hard:4.0f} m in maneuvers")
 
 # %%
 # Position: the plots have 150 m. The slow conventional tracker is off by far more than they are,
-# and later than the manoeuvre.
+# and later than the maneuver.
 found.pictures["fig3-position-rmse"]()
 
 # %%
@@ -39,6 +39,6 @@ found.pictures["fig3-position-rmse"]()
 found.pictures["fig4-velocity-rmse"]()
 
 # %%
-# The adjusted noise follows the manoeuvres, with the delay of the window; that of the literal text
+# The adjusted noise follows the maneuvers, with the delay of the window; that of the literal text
 # stays up at more than 500 m/s².
 found.pictures["fig6-adjusted-noise"]()

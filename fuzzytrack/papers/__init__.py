@@ -1,4 +1,4 @@
-"""Experiments of published papers, rebuilt: their numbers beside ours.
+"""Experiments of published papers, rebuilt, with published and own numbers side by side.
 
 One module a paper, each with a function ``reproduce(runs, seed, progress)``; `PAPERS` names them.
 """

@@ -1,4 +1,4 @@
-"""Al-Wagih & Abdulla: five ways to select α and β, in white and in coloured noise."""
+"""Al-Wagih & Abdulla: five ways to select α and β, in white and in colored noise."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ _AXES = ("X", "Y")
 _SMALL = "M1, α = 0.01"
 _LAST, _BEST, _SOFT = "M5 last", "M5 best", "M5 soft"
 
-# Share of the paper's averages that a scenario made after them may be off.
+# Relative deviation that is allowed from the paper's averages, for a scenario made after them.
 _MADE = 0.28
-# A step of the search costs what hundreds of other steps do: from so many runs on compiling pays.
+# A step of the search costs as much as hundreds of other steps: from here on compiling pays.
 _COMPILED_RUNS = 50
 
 
@@ -145,7 +145,7 @@ def _predicted(tracker: Tracker, time: Array, z: Array, sigma: Array) -> Array:
 
 
 def _rmse(errors: Array) -> Array:
-    """Eq. 26, along the scans.
+    """Root mean square error along the scans, Eq. 26.
 
     The number of measured data is that of all plots; the two of the start count with no error.
     """
@@ -190,9 +190,7 @@ def _why(label: str, axis: str) -> str:
     if label not in METHODS:
         return ""
     if (label, axis) == ("M4", "X"):
-        return (
-            "in S3 the target manoeuvres in X late, and the window is full soon after: M4 follows"
-        )
+        return "in S3 the target maneuvers late in X, and the window is full soon after: M4 follows"
     return (
         "published is the average of five experiments; our scenario is made after these averages, "
         f"so {_MADE:.0%} of them are allowed"
@@ -214,7 +212,7 @@ def _pictures(errors: dict[str, dict[str, Array]]) -> dict[str, Draw]:
 
 
 def _methods(noise: str, errors: dict[str, Array]) -> Draw:
-    """RMSE of the five methods, and the paper's."""
+    """Drawing of the RMSE of the five methods, ours and the paper's."""
     published = averages(_TABLES[noise][1])
     curves = {}
     for number, axis in enumerate(_AXES):
@@ -236,7 +234,7 @@ def _methods(noise: str, errors: dict[str, Array]) -> Draw:
 
 
 def _over_time(axis: str, errors: dict[str, Array]) -> Draw:
-    """Root mean square over the runs; from the fourth scan on, as the third may have no error."""
+    """Drawing of the root mean square over runs, from the fourth scan on."""
     number = _AXES.index(axis)
     time = s3()[0][3:]
     curves = {label: np.sqrt((errors[label][3:, :, number] ** 2).mean(axis=1)) for label in _DRAWN}

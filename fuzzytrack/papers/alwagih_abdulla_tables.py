@@ -1,4 +1,4 @@
-"""Tables of Al-Wagih & Abdulla as printed, and what follows from the first two of them."""
+"""Tables of Al-Wagih & Abdulla as printed, and recomputed from the first two of them."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ TABLE_1 = _printed("""
     50.5104 53.6469 53.1669 22.7810 11.9972
     307.2010 61.0965 64.9569 278.5191 19.2215
 """)
-#: RMSE in coloured noise, likewise.
+#: RMSE in colored noise, likewise.
 TABLE_2 = _printed("""
     43.7560 44.4713 44.0580 25.6035 17.0891
     292.9631 78.7142 79.2807 273.4808 21.6512
@@ -62,7 +62,7 @@ TABLE_2 = _printed("""
     49.1139 53.1412 52.7067 25.1383 16.5149
     300.8425 85.0407 85.7739 283.3336 21.0630
 """)
-#: Averages of what M1 and M2 are above M3, M4 and M5 in Table 1: M1 in X and Y, M2 in X and Y.
+#: Average excess of M1 and M2 over M3, M4 and M5 in Table 1: M1 in X and Y, M2 in X and Y.
 TABLE_3 = _printed("""
     4.7713 14.0870 28.9063
     232.2810 27.3819 280.7019
@@ -76,7 +76,7 @@ TABLE_4 = _printed("""
     0.5262 11.8695 26.5106
     0.5287 -191.0747 64.3061
 """)
-#: Percentage that M3, M4 and M5 are below M1 in Table 1, row by row.
+#: Percentage by which M3, M4 and M5 are below M1 in Table 1, row by row.
 TABLE_5 = _printed("""
     6.2501 10.9382 63.4230
     77.0790 9.0798 93.9002
@@ -103,7 +103,7 @@ TABLE_6 = _printed("""
     71.4888 5.8199 92.9987
 """)
 
-# The paper cuts off after four decimals, or rounds.
+# The paper truncates after four decimals, or rounds.
 _ROUNDING = 1e-4
 
 _ABSOLUTE = "the absolute differences are averaged, although their signs are mixed"
@@ -153,7 +153,7 @@ def differences(errors: Table) -> Table:
 
 
 def changes(errors: Table) -> Table:
-    """Percentage that M3, M4 and M5 are below M1, Eq. 27, laid out as Tables 5 and 6."""
+    """Percentage by which M3, M4 and M5 are below M1, Eq. 27, laid out as Tables 5 and 6."""
     return tuple(tuple(100 * (line[0] - error) / line[0] for error in line[2:]) for line in errors)
 
 
@@ -173,7 +173,7 @@ def _column(errors: Table, method: str, axis: str) -> list[Fraction]:
 
 
 def table_rows() -> list[Row]:
-    """Tables 3 to 6, recomputed from Tables 1 and 2, and the claims made of them."""
+    """Tables 3 to 6 recomputed from Tables 1 and 2, and the paper's conclusions from them."""
     rows = []
     for name, printed, errors in (("Table 3", TABLE_3, TABLE_1), ("Table 4", TABLE_4, TABLE_2)):
         names = [
@@ -202,10 +202,10 @@ def _compared(name: str, names: list[list[str]], ours: Table, printed: Table) ->
 
 
 def _claim_rows() -> list[Row]:
-    white_and_coloured = (("white", TABLE_1), ("coloured", TABLE_2))
+    noises = (("white", TABLE_1), ("coloured", TABLE_2))
     p = {
         (classical, method, axis, noise): p_value(errors, classical, method, axis)
-        for noise, errors in white_and_coloured
+        for noise, errors in noises
         for classical in METHODS[:2]
         for method in METHODS[2:]
         for axis in AXES
@@ -218,7 +218,7 @@ def _claim_rows() -> list[Row]:
     for (classical, method, axis, noise), value in p.items():
         if (classical, method, axis) in (("M1", "M3", "X"), ("M2", "M4", "X")):
             rows.append(row("Section 7", f"p of {classical} - {method} in {axis}, {noise}", value))
-    for noise, errors in white_and_coloured:
+    for noise, errors in noises:
         mean = averages(errors)
         ratio = float(mean["M4", "Y"] / mean["M3", "Y"])
         why = "averages of the RMSE; the text has M4 before M3"

@@ -1,4 +1,4 @@
-"""Papers by name, and the call that rebuilds the experiments of one."""
+"""Papers by name, and the function that rebuilds the experiments of one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PAPERS = {
     "zhang-jiang": "zhang_jiang",
 }
 
-#: About how long each takes, beside the others.
+#: About how long each takes, relative to the others.
 COST = {"alwagih-abdulla": 5, "kim-lee": 1, "llinas": 8, "njonjo": 9, "zhang-jiang": 0.1}
 
 

@@ -110,7 +110,7 @@ class _Curves:
         assert results.velocity is not None
         self.position = _rms(results.filtered[number])
         self.velocity = _rms(results.velocity[number])
-        # Of the mean square, from run to run
+        # Standard error of the mean square, from run to run
         squares = (results.filtered[number] ** 2).sum(axis=-1)
         self.scored = self.time >= 14
         self.maneuver = _between(self.time, (26, 35), (66, 75))
@@ -125,7 +125,7 @@ class _Curves:
         runs = len(self.squares)
         if runs < 2:
             return None
-        # To first order the root of a mean moves by 1/(2 root) of what the mean does.
+        # Delta method: the root of a mean changes by 1/(2 root) of the change of the mean.
         slopes = self.squares[:, where] / (2 * self.position[where])
         return float(slopes.mean(axis=1).std(ddof=1) / np.sqrt(runs))
 
@@ -146,7 +146,7 @@ def _error_rows(label: str, curves: _Curves, runs: int) -> list[Row]:
     def said(table: str, quantity: str, ours: float, se: float | None = None) -> Row:
         return row(table, f"{label}: {quantity}", ours, se=se, runs=runs)
 
-    where = {"mean": curves.scored, "manoeuvre": curves.maneuver, "quiet": curves.quiet}
+    where = {"mean": curves.scored, "maneuver": curves.maneuver, "quiet": curves.quiet}
     rows = [
         said("Fig. 3", f"position, {name} (m)", curves.mean(curves.position, scans),
              curves.se(scans))
@@ -213,7 +213,7 @@ def _pictures(results: Results, noise: dict[str, tuple[Array, Array]]) -> dict[s
         assert results.velocity is not None
         error = results.velocity[results.names.index(label)].mean(axis=0)
         velocity[label] = true + error[:, 0]
-    # After the trackers, so that these have the same colours in all pictures.
+    # After the trackers, so that these have the same colors in all pictures.
     velocity["true"] = true
     track = {"true": position[:, 0] / 1e3, "plots of one run": results.sample.plots[:, 0] / 1e3}
     sigma_v = {label: np.median(found, axis=1) for label, (found, _) in noise.items()}
@@ -226,7 +226,7 @@ def _pictures(results: Results, noise: dict[str, tuple[Array, Array]]) -> dict[s
         "fig4-velocity-rmse": _drawing(
             time, {k: c.velocity for k, c in curves.items()}, "RMSE of velocity (m/s)"
         ),
-        "fig5-npe": _drawing(time, npe, "normalised position error"),
+        "fig5-npe": _drawing(time, npe, "normalized position error"),
         "fig6-adjusted-noise": _drawing(time, sigma_v, "adjusted σ_v, median (m/s²)"),
     }
 

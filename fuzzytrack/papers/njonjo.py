@@ -28,7 +28,7 @@ __all__ = ["RUNS", "StoredGains", "kalman_gains", "reproduce", "scenario"]
 RUNS = 100
 XI = 0.64
 PERIOD = 3.0
-# Runs of the sweeps: the same in all filters, so that differences show early.
+# Runs of the sweeps; all filters see the same noise, so a few runs show differences.
 SWEEP_RUNS = 20
 R_GRID = (0.01, 0.1, 1.0, 10.0, 100.0)
 Q_GRID = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
@@ -52,7 +52,7 @@ def scenario() -> Scenario:
 
 @dataclass(frozen=True)
 class StoredGains(GainScheduler):
-    """Gains computed beforehand, one set an update; the last one stays.
+    """Gains computed beforehand, one set for each update; the last set is kept after it.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def _best_xi_rows(totals: dict[Any, _Totals], runs: int) -> list[Row]:
 
 
 def _lowest(x: Sequence[float], y: Sequence[float]) -> float:
-    """Where a parabola through the lowest point and its neighbours is lowest."""
+    """Lowest point of the parabola through the lowest value and its neighbors."""
     k = min(max(int(np.argmin(y)), 1), len(y) - 2)
     left, middle, right = y[k - 1 : k + 2]
     step = x[k + 1] - x[k]

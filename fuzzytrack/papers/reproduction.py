@@ -1,4 +1,4 @@
-"""What a reproduced experiment is: rows of published and own numbers, with a verdict each."""
+"""A reproduced experiment: rows of published and own numbers, with a verdict each."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Row:
     ours : float
         Ours.
     se : float or None
-        Standard error of ours over Monte Carlo runs; None of what is no average.
+        Standard error of ours over Monte Carlo runs; None if it is not an average.
     runs : int or None
-        Number of those runs.
+        Number of these runs.
     verdict : {"matches", "differs", "not stated"}
-        Whether ours is the paper's number.
+        Whether ours agrees with the paper's number.
     why : str
         Why it differs, or how the paper is read.
     """
@@ -67,8 +67,8 @@ def row(
     table, quantity, ours, published, se, runs, why
         As for `Row`.
     within : float
-        Difference that rounding, or the paper's own Monte Carlo error, explains. Two of our own
-        standard errors come on top of it.
+        Difference that rounding or the paper's own Monte Carlo error explains. Two of our own
+        standard errors are added to it.
     """
     if published is None:
         verdict = NOT_STATED
@@ -92,7 +92,7 @@ class Reproduction:
     rows : tuple of Row
         Numbers, in the order of the paper.
     notes : tuple of str
-        What is to be known of the paper as a whole: how it is read, what is not reproducible.
+        Remarks on the paper as a whole: how it is read, what is not reproducible.
     pictures : mapping of str to callable
         By name: functions that draw a figure of the paper.
     """

@@ -1,4 +1,4 @@
-"""Reports of experiments, as HTML with pictures."""
+"""Reports of Monte Carlo experiments as HTML pages with pictures."""
 
 from fuzzytrack.reports.html_report import write_report
 

@@ -1,4 +1,4 @@
-"""The report of a Monte Carlo experiment: one HTML page that needs nothing else."""
+"""Report of a Monte Carlo experiment as one HTML page, pictures included."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 __all__ = ["report_pictures", "write_report"]
 
 
-# Bytes beyond which a picture goes in as pixels rather than lines.
+# Size in bytes above which a picture is embedded as PNG rather than SVG.
 HEAVY = 250_000
-# Metres beyond which digits before the point are too many to read.
+# Numbers from here on are written as powers of ten.
 LARGE = 1e7
 
 DEFINITIONS = {
@@ -58,7 +58,7 @@ DEFINITIONS = {
     "±": "What follows is the standard error: what another set of runs would typically change.",
     "Velocity RMSE": "As RMSE, of the filtered velocity.",
     "NIS, NEES": (
-        "Normalised innovation squared and normalised estimation error squared: squared errors in "
+        "Normalized innovation squared and normalized estimation error squared: squared errors in "
         "units of the variance that the filter presumes. A consistent filter has a mean equal to "
         "the number of axes; more says that it trusts itself too much, less too little. Only where "
         "the scenario states the acceleration noise that is presumed."
@@ -121,14 +121,14 @@ def write_report(
     title: str | None = None,
     pictures: Mapping[str, Figure] | None = None,
 ) -> Path:
-    """Write what came out of an experiment as one HTML page, pictures included.
+    """Write the results of an experiment as one HTML page, pictures included.
 
     Parameters
     ----------
     path : str or path
         The file; replaced if it exists, written whole or not at all.
     results : Results
-        What came out.
+        Results of the experiment.
     title : str, optional
         Of the page; the name of the scenario unless given.
     pictures : mapping of str to Figure, optional
@@ -164,11 +164,11 @@ def write_report(
 
 
 def _picture(key: str, figure: Figure) -> str:
-    """One picture with its caption, inline."""
+    """One picture with its caption, embedded in the page."""
     import matplotlib
 
     drawing = io.BytesIO()
-    # Salted and undated: the same picture has the same bytes.
+    # A fixed salt and no date, so that the same picture has the same bytes.
     with matplotlib.rc_context({"svg.hashsalt": "fuzzytrack"}):
         figure.savefig(drawing, format="svg", metadata={"Date": None})
     kind = "svg+xml"
@@ -237,7 +237,7 @@ def _errors(results: Results) -> str:
 
 
 def _consistency(results: Results) -> str:
-    """Table of consistency; nothing where it is not known."""
+    """Table of consistency; empty where it is not known."""
     columns = {}
     for name, found in (
         ("NIS", results.nis_consistency(LEVEL)),
@@ -272,7 +272,7 @@ def _definitions() -> str:
 
 
 def _estimates(values: Array, errors: Array) -> list[str]:
-    """Estimates with their standard errors, to the digits that these leave certain."""
+    """Estimates with their standard errors, rounded to two digits of these."""
     return [_estimate(*pair) for pair in zip(values.tolist(), errors.tolist(), strict=True)]
 
 
@@ -294,7 +294,7 @@ def _change(found: PairedDifference) -> str:
 
 
 def _digits(error: float) -> int:
-    """Decimals that show two figures of a standard error, or one beyond a hundred."""
+    """Decimal places that show two digits of a standard error."""
     return min(12, max(0, 1 - math.floor(math.log10(error)))) if error > 0 else 3
 
 
@@ -304,7 +304,7 @@ def _interval(low: float, high: float) -> str:
 
 
 def _number(value: float) -> str:
-    """Four figures, or all before the point; a dash for what is not known."""
+    """Number to four digits, or to all before the point; a dash for NaN."""
     if not math.isfinite(value):
         return "–"
     text = f"{value:.0f}" if 1e4 <= abs(value) < LARGE else f"{value:.4g}"

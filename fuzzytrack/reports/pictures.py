@@ -1,4 +1,4 @@
-"""Pictures of a Monte Carlo experiment, and how to read them."""
+"""Pictures of a Monte Carlo experiment, with captions."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ __all__ = ["CAPTIONS", "LEVEL", "report_pictures"]
 
 #: Confidence level of all intervals.
 LEVEL = 0.95
-# Trackers that the picture of one run shows; more would hide each other.
+# Largest number of trackers in the picture of one run.
 SHOWN = 4
-# Letters of a tracker's name that a legend has room for.
+# Largest number of letters of a name in a legend.
 ROOM = 44
 
-#: Of each picture: its heading, and how to read it.
+#: Heading and caption of each picture.
 CAPTIONS = {
     "error-over-time": (
         "Error over time",
@@ -52,7 +52,7 @@ CAPTIONS = {
     ),
     "consistency": (
         "Consistency",
-        "Normalised innovation squared, mean over runs at each scan. A filter whose presumed "
+        "Normalized innovation squared, mean over runs at each scan. A filter whose presumed "
         "noise is right stays in the band in 95 % of scans; above it trusts itself too much, "
         "below too little. Trackers without a line have no covariance to judge.",
     ),
@@ -65,7 +65,7 @@ def report_pictures(results: Results) -> dict[str, Figure]:
     Parameters
     ----------
     results : Results
-        What came out.
+        Results of the experiment.
 
     Returns
     -------
@@ -162,7 +162,7 @@ def _draw_gain_plane(results: Results, labels: Sequence[str]) -> Figure:
     _, plane = plot_gain_plane(dict(zip(labels, gains, strict=True)), ax=figure.subplots())
     for panel in (plane, *plane.child_axes):
         for line in panel.lines:
-            # A fixed pair of gains would vanish below what others spread over it.
+            # A fixed pair of gains is one point; it is drawn above the spread gains of the others.
             if line.get_label() in labels and np.size(line.get_xdata()) == 1:
                 line.set(zorder=4, markersize=8, alpha=1.0, markeredgewidth=0.8)
                 line.set_markeredgecolor("white")
@@ -178,7 +178,7 @@ def _draw_consistency(results: Results, labels: Sequence[str]) -> Figure:
     plot_consistency(
         results.time,
         dict(zip(labels, found.scan_mean, strict=True)),
-        # That of the tracker with the most runs, which is the narrowest.
+        # The band of the tracker with the most runs, which is the narrowest.
         (np.fmax.reduce(found.scan_low), np.fmin.reduce(found.scan_high)),
         ax=figure.subplots(),
     )
@@ -186,16 +186,16 @@ def _draw_consistency(results: Results, labels: Sequence[str]) -> Figure:
 
 
 def _figure(width: float, height: float) -> Figure:
-    """Figure apart from pyplot, which opens no window and stays in no list."""
+    """Figure that pyplot does not know: it opens no window and need not be closed."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def _labels(names: Sequence[str]) -> list[str]:
-    """Names as legends can take them: short, still different, without marks of mathematics."""
+    """Names for legends: short, still different from each other, without mathematical notation."""
     short = [name if len(name) <= ROOM else f"{name[: ROOM - 1]}…" for name in names]
     if len(set(short)) < len(short):
         short = [f"{number}. {name}" for number, name in enumerate(short, 1)]
-    # Matplotlib leaves out of a legend what begins with an underscore.
+    # Matplotlib leaves labels out of a legend that begin with an underscore.
     return [f" {s}" if s.startswith("_") else s for s in (s.replace("$", r"\$") for s in short)]

@@ -1,4 +1,4 @@
-"""Plots of several sensors made one: measurement fusion, axis by axis."""
+"""Measurement fusion: the plots of several sensors combined into one, axis by axis."""
 
 from __future__ import annotations
 
@@ -83,14 +83,14 @@ def fuse(z: ArrayLike, variance: ArrayLike) -> tuple[Array, Array]:
         raise ValueError(f"z: needs shape (..., n_sensors, n_axes); got shape {plots.shape}")
     fused = np.full(plots.shape[:-2] + plots.shape[-1:], np.nan)
     of_fused = fused
-    # One after the other, from the first: a sensor that sees nothing does not change a bit.
+    # In order from the first, so that a sensor without a measurement leaves the result as it is.
     for k in range(plots.shape[-2]):
         fused, of_fused = _pair(fused, of_fused, plots[..., k, :], variances[..., k, :])
     return fused, of_fused
 
 
 def _pair(z1: Array, variance1: Array, z2: Array, variance2: Array) -> tuple[Array, Array]:
-    # Halves and a quotient first: neither sum nor product of variances overflows.
+    # Halves and a quotient first, so that neither a sum nor a product of variances overflows.
     half = variance1 / 2 + variance2 / 2
     weight = variance1 / half / 2
     no_one, no_two = np.isnan(z1), np.isnan(z2)
@@ -100,7 +100,7 @@ def _pair(z1: Array, variance1: Array, z2: Array, variance2: Array) -> tuple[Arr
 
 
 def _checked(name: str, z: ArrayLike, variance: ArrayLike) -> tuple[Array, Array]:
-    """Measurements and variances of one shape, the latter NaN where the former are."""
+    """Measurements and variances broadcast to one shape, variances NaN where measurements are."""
     plots = np.asarray(z, dtype=np.float64)
     given = np.asarray(variance, dtype=np.float64)
     try:

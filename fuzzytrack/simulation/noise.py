@@ -1,4 +1,4 @@
-"""Noise of unit variance: white, coloured, heavy-tailed; and plots with the same noise everywhere.
+"""White, colored and heavy-tailed noise of unit variance, and plots with it.
 
 Every Monte Carlo run draws from a random stream of its own, so its numbers depend neither on how
 many runs there are nor on how they are put into batches.
@@ -128,7 +128,7 @@ def noisy_plots(
     runs: Sequence[np.random.SeedSequence],
     noise: Noise = WHITE,
 ) -> Plots:
-    """Plots of one target with noise that does not depend on where it is.
+    """Plots of one target whose noise does not depend on its position.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Trajectories of published experiments, and random sets of tracks like them.
 
-Each is a function of nothing, or of a seed, so that a number in a paper can be held against the
+Each is a function of nothing, or of a seed, so that a number in a paper can be compared with the
 same target. What a paper leaves open, and how it is read here, stands in each Notes.
 """
 
@@ -63,7 +63,7 @@ def llinas_maneuver(name: str) -> tuple[Array, Array]:
     t : ndarray, shape (20,)
         Times (s), 0 to 1140, 60 apart.
     position : ndarray, shape (20, 2)
-        Position (m) in the sensor field centred on (0, 0).
+        Position (m) in the sensor field centered on (0, 0).
 
     Raises
     ------
@@ -173,7 +173,7 @@ def s3() -> tuple[Array, Array]:
 
 
 def _integrated(position: float, speed: float, acceleration: Array) -> Array:
-    """Positions under accelerations that are constant for a second each."""
+    """Positions under accelerations, each constant for one second."""
     speeds = speed + np.concatenate([[0.0], np.cumsum(acceleration)])
     moves = speeds[:-1] + acceleration / 2
     return np.asarray(position + np.concatenate([[0.0], np.cumsum(moves)]))
@@ -225,7 +225,7 @@ def warship(rate: float = 0.0168) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class TrackSet:
-    """Tracks to rank trackers on, in units of the noise and of the time between scans.
+    """Tracks for ranking trackers, in units of the noise and of the time between scans.
 
     Attributes
     ----------
@@ -249,7 +249,7 @@ class TrackSet:
 
 
 def track_set(name: str, tracks: int, seed: int) -> TrackSet:
-    """Random tracks to rank trackers on.
+    """Random tracks for ranking trackers.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ def _legs(
     speeds: tuple[float, float],
     steps: int = 60,
 ) -> Array:
-    """Straight legs and maneuvers in turn, straight first."""
+    """Straight legs and maneuvers alternating, beginning with a straight leg."""
     low, high = accelerations
     size = math.exp(rng.uniform(math.log(low), math.log(high)))
     speed, heading = rng.uniform(*speeds), rng.uniform(0, 2 * math.pi)
@@ -343,9 +343,9 @@ def _legs(
 
 
 def _moved(speed: float, heading: float, along: Array, left: Array) -> Array:
-    """Positions under accelerations along and across the way, constant over a scan each."""
+    """Positions under accelerations along and across the path, each constant during a scan."""
     speeds = speed + np.concatenate([[0.0], np.cumsum(along)])
-    # A maneuver is one or the other, so the speed is constant in a turn.
+    # A maneuver is either along or across the path, so the speed is constant in a turn.
     turns = np.divide(left, speeds[:-1], out=np.zeros_like(left), where=left != 0)
     headings = heading + np.concatenate([[0.0], np.cumsum(turns)])
     middle = headings[:-1] + turns / 2

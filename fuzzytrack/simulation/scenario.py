@@ -1,4 +1,4 @@
-"""What a Monte Carlo experiment is: a target, the sensors that see it, and what counts."""
+"""Scenario of a Monte Carlo experiment: a target, its sensors, and the scans that are scored."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Sensors(Protocol):
 
 @dataclass(frozen=True)
 class PlotNoise:
-    """Noise that does not depend on where the target is.
+    """Sensors whose noise does not depend on the position of the target.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class PlotNoise:
         known = truth if truth.ndim == 3 else truth[:, None]
         z[: self.clean] = np.broadcast_to(known, z.shape)[: self.clean]
         if self.detection < 1:
-            # Drawn after the noise, from a stream of its own: noise is the same at any detection.
+            # From a stream of its own, so that the noise does not depend on `detection`.
             draws = [np.random.default_rng(run.spawn(1)[0]).random(len(z)) for run in _copies(runs)]
             missed = np.stack(draws, axis=1) >= self.detection
             missed[: self.clean] = False
@@ -83,13 +83,13 @@ class PlotNoise:
 
 
 def _copies(runs: Sequence[np.random.SeedSequence]) -> list[np.random.SeedSequence]:
-    """The same streams; spawning from them leaves the given ones as they are."""
+    """Copies of random streams, so that spawning from them does not change the given ones."""
     return [np.random.SeedSequence(entropy=run.entropy, spawn_key=run.spawn_key) for run in runs]
 
 
 @dataclass(frozen=True)
 class FieldSensors:
-    """A field of sensors, and how its noise is drawn; see `SensorField.measure`."""
+    """A field of sensors with the kind of its noise; see `SensorField.measure`."""
 
     field: SensorField
     noise: Noise = WHITE
@@ -105,7 +105,7 @@ class FieldSensors:
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
-    """A target, the sensors that see it, and what counts of the errors.
+    """A target, its sensors, and the scans whose errors are scored.
 
     Parameters
     ----------

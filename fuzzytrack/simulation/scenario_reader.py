@@ -1,4 +1,4 @@
-"""From a located YAML tree to a scenario: every complaint names the place and the word."""
+"""Scenario read from a YAML tree; every error names the place in the file and the word."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Target = tuple[Array, Array, int]
 
 FORMAT_VERSION = "1"
 
-# So that a text cannot ask for more memory than a computer has.
+# Limits, so that a text cannot ask for more memory than a computer has.
 MAX_SCANS = 100_000
 MAX_TRACKS = 10_000
 MAX_SENSORS = 10_000
@@ -87,7 +87,7 @@ _SENSOR_KEYS = ("clean", "spacing", "centre", *_FIELD_NUMBERS, *_FIELD_KEYS)
 
 
 class ScenarioReader:
-    """Makes a scenario of a located YAML tree.
+    """Reader of the scenario in a YAML document.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class ScenarioReader:
             )
 
     def source(self) -> str:
-        """Read what the file says of its origin, and nothing else; empty if it says nothing."""
+        """Read the source of the scenario only; empty if the file names none."""
         entries = self.document.entries(self.document.root, "the scenario")
         return self.document.text(entries["source"][1], "source") if "source" in entries else ""
 
@@ -167,7 +167,7 @@ class ScenarioReader:
         return tuple(specs)
 
     def _beside(self, name: str) -> str:
-        """Name of a file, which is looked for in the folder of the scenario."""
+        """Path of a file that the scenario names, relative to the folder of the scenario."""
         return str(Path(self.document.file).parent / name)
 
     # ---------------------------------------------------------------- target
@@ -326,7 +326,7 @@ class ScenarioReader:
     def _field_numbers(self, fields: Mapping[str, Node]) -> dict[str, Any]:
         given: dict[str, Any] = {key: self._each(fields[key], key) for key in _FIELD_NUMBERS}
         bearing = np.asarray(given["bearing_sigma"])
-        # Here, since degrees are what the file holds.
+        # Checked here, since the file is in degrees.
         if not (bearing > 0).all():
             worst = f"{bearing.min():g}"
             raise self.document.error(
@@ -352,7 +352,7 @@ class ScenarioReader:
     # ---------------------------------------------------------------- questions
 
     def _kind(self, node: Node, role: str, kinds: Collection[str], known: Collection[str]) -> str:
-        """The one key of a mapping that says what kind of thing it is."""
+        """The single key of a mapping that tells its kind."""
         entries = self.document.entries(node, role)
         found = [word for word in entries if word in kinds]
         if len(found) > 1:
@@ -369,9 +369,9 @@ class ScenarioReader:
 
     @contextmanager
     def _blaming(self, fields: Mapping[str, Node], node: Node) -> Iterator[None]:
-        """Give complaints of the model the place of the key they name, else of `node`."""
+        """Give an error of the model the place of the key that it names, else of `node`."""
         try:
-            # What overflows is complained of as infinite.
+            # An overflow is reported as an infinite number.
             with np.errstate(all="ignore"):
                 yield
         except FileError:

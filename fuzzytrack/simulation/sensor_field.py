@@ -1,4 +1,4 @@
-"""A field of sensors that measure range and bearing of what is near them."""
+"""A field of sensors that measure range and bearing of targets near them."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ class SensorField:
         seen = np.broadcast_to(
             self.sees(positions), (len(positions), len(runs), len(self.position))
         )
-        # Only the sensors that ever see a target take part.
+        # Only sensors that have the target within reach in some scan.
         ever = np.flatnonzero(seen.any(axis=(0, 1)))
         error, detected = self._draw(seen[:, :, ever], runs, noise)
         distance, bearing = self._polar(positions, ever)
@@ -259,7 +259,7 @@ def sensor_grid(
         As for `SensorField`; of several, row after row from the smallest y, each row from the
         smallest x.
     centre : (float, float)
-        Centre of the field (m).
+        Center of the field (m).
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What a two-point start needs: plots in the first two scans."""
+"""Plots for a two-point start: one in each of the first two scans."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["prepare_start"]
 
 
 def prepare_start(t: ArrayLike, z: ArrayLike, sigma: ArrayLike) -> tuple[Array, Plots]:
-    """Plots that begin with the first seen, the second interpolated where it was missed.
+    """Plots from the first one on, with the second scan interpolated where it was missed.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def prepare_start(t: ArrayLike, z: ArrayLike, sigma: ArrayLike) -> tuple[Array, 
     order = np.arange(len(times))[:, None]
     later = seen & (order > first + 1)
     following = later.argmax(axis=0)
-    # One lane an axis of a run; the others have their second plot, or no later one.
+    # One lane for each axis of a run; other lanes have their second plot, or no later plot.
     column = np.flatnonzero(later.any(axis=0))
     column = column[~seen[first[column] + 1, column]]
     one, two, three = first[column], first[column] + 1, following[column]

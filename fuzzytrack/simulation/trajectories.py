@@ -369,13 +369,13 @@ def sample_times(steps: int, period: float) -> Array:
 
 
 def _way(speed: float, acceleration: float, steps: int, period: float) -> tuple[Array, Array]:
-    """Times, and the way covered by then."""
+    """Times, and the distance covered by then."""
     t = sample_times(steps, period)
     return t, finite("speed", speed) * t + finite("acceleration", acceleration) * t**2 / 2
 
 
 def _placed(along: Array, across: Array, heading: float, start: Sequence[float]) -> Array:
-    """From a frame with the x axis along the heading."""
+    """Positions and velocities turned from a frame with the x axis along the heading."""
     first = finite("start", start)
     if first.shape != (2,):
         raise ValueError(f"start must be two coordinates (m), got shape {first.shape}")

@@ -24,7 +24,7 @@ __all__ = ["ChunkStore"]
 
 
 _FOLDER, _JOB = "chunks", "job.json"
-# They say what a scenario is for, and do not touch a number.
+# Parts of a scenario that have no effect on the numbers.
 _WITHOUT_EFFECT = ("name", "source", "trackers", "first_scored")
 
 
@@ -56,7 +56,7 @@ class ChunkStore:
         *,
         resume: bool,
     ) -> ChunkStore:
-        """Make ready a folder for a job, or go on with the job that it holds.
+        """Prepare the folder of a job, or continue the job whose chunks it holds.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class ChunkStore:
     def load(self, runs: range) -> dict[str, Array] | None:
         """Arrays of a chunk by name; None if there is no complete file of just these runs."""
         try:
-            # Opened here: numpy leaves a file open that is no archive.
+            # Opened here, since numpy leaves a file open that is not an archive.
             with self._path(runs).open("rb") as file:
                 arrays = dict(np.load(file, allow_pickle=False))
         except (OSError, EOFError, ValueError, zipfile.BadZipFile):
@@ -113,7 +113,7 @@ class ChunkStore:
 def _job(
     scenario: Scenario, trackers: Mapping[str, Tracker], seed: int, size: int
 ) -> dict[str, str]:
-    """Everything that the numbers depend on, in words."""
+    """Everything that the numbers of a job depend on, as text."""
     job = {
         "fuzzytrack": __version__,
         "numpy": np.__version__,
@@ -148,14 +148,14 @@ def _earlier(place: Path) -> dict[str, str]:
 
 
 def _words(value: Any) -> str:
-    """A short value itself, of another its kind and a digest."""
+    """Text of a short value; of any other its type and a digest."""
     if value is None or isinstance(value, bool | int | float | str):
         return str(value)
     return f"{type(value).__name__} {_digest(value)[:16]}"
 
 
 def _digest(value: Any) -> str:
-    """Of what a value holds, the same in every process."""
+    """Digest of the contents of a value, the same in every process."""
     state = hashlib.sha256()
     _feed(state, value)
     return state.hexdigest()

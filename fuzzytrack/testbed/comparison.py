@@ -207,7 +207,7 @@ def _check(trackers: Mapping[str, Tracker], sigma: float, runs: int, seed: int) 
 
 
 def _pool(tracks: Sequence[tuple[ArrayLike, ArrayLike]]) -> tuple[Array, tuple[Batch, ...]]:
-    """Truth of all tracks, scan after scan and a gap at the end, and the tracks in batches."""
+    """True positions of all tracks in one array, a NaN row at its end, and batches of tracks."""
     pairs = [(np.asarray(t, float), np.asarray(truth, float)) for t, truth in tracks]
     for t, truth in pairs:
         if truth.ndim != 2 or t.shape != truth.shape[:1]:
@@ -223,7 +223,7 @@ def _pool(tracks: Sequence[tuple[ArrayLike, ArrayLike]]) -> tuple[Array, tuple[B
 
 
 class _Sums:
-    """Mean squared errors, gathered from one batch of runs after the other."""
+    """Mean squared errors, collected over batches of runs."""
 
     def __init__(
         self,
@@ -273,12 +273,12 @@ class _Sums:
             for errors, positions in ((predicted, result.predicted), (filtered, result.filtered)):
                 square = _squares(positions.reshape(z.shape), truth)
                 errors[:, batch.places] = square.swapaxes(0, 1)
-        # The gap at the end belongs to no track.
+        # The row at the end belongs to no track.
         predicted[:, -1] = filtered[:, -1] = np.nan
         return predicted, filtered
 
     def comparison(self, seed: int) -> Comparison:
-        """Everything gathered so far."""
+        """Comparison of all runs so far."""
         means = np.concatenate(self.means, axis=1)
         return Comparison(
             names=tuple(self.trackers),
@@ -305,7 +305,7 @@ def _root(mse: Array) -> Array:
 
 
 def _standard_error(mse: Array) -> Array:
-    """Of the root of the mean over runs, to first order."""
+    """Standard error of the root of the mean over runs, by the delta method."""
     runs = mse.shape[-1]
     if runs < 2:
         return np.full(mse.shape[:-1], np.nan)

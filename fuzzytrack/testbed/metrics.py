@@ -1,4 +1,4 @@
-"""What errors over Monte Carlo runs come to: means, deviations, quantiles, consistency.
+"""Statistics of errors over Monte Carlo runs: means, variances, quantiles, consistency.
 
 Arrays of errors have their runs and scans last, shape (..., runs, n_steps). Runs are independent
 of each other, the scans of a run are not: standard errors are those over runs, each with its own
@@ -37,7 +37,7 @@ __all__ = [
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """A mean over runs, or what is made of one.
+    """Estimates from the mean over runs, with standard errors.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Peak:
 
 @dataclass(frozen=True)
 class PairedDifference:
-    """What one tracker's error is above another's in the same runs.
+    """Difference between the errors of two trackers in the same runs.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class PairedDifference:
 
 @dataclass(frozen=True, eq=False)
 class Consistency:
-    """Normalised squared errors held against what a consistent filter has.
+    """Normalized squared errors compared with those of a consistent filter.
 
     Attributes
     ----------
@@ -152,7 +152,7 @@ def distance(errors: ArrayLike) -> Array:
     ndarray, shape (...)
     """
     each = np.asarray(errors, dtype=np.float64)
-    # Axis by axis: the same bits whatever is beside.
+    # Axis by axis, so that the result does not depend on the other dimensions to the last bit.
     total = np.square(each[..., 0])
     for k in range(1, each.shape[-1]):
         total += np.square(each[..., k])
@@ -254,7 +254,7 @@ def peak(values: ArrayLike) -> Peak:
 
 
 def quantiles(values: ArrayLike, counts: ArrayLike, levels: ArrayLike) -> Array:
-    """Quantiles over runs, scan by scan, interpolated between neighbours.
+    """Quantiles over runs, scan by scan, interpolated between neighbors.
 
     Parameters
     ----------
@@ -344,7 +344,7 @@ def consistency(
     independent_scans: bool,
     level: float = 0.95,
 ) -> Consistency:
-    """Hold normalised squared errors against the chi-square distribution.
+    """Compare normalized squared errors with the chi-square distribution.
 
     Parameters
     ----------
@@ -382,7 +382,7 @@ def consistency(
     sums, scans = _sums(each, counts)
     summed = np.where(counts, freedom, 0).sum(axis=(-1, -2))
     number = scans.sum(axis=-1)
-    # As many independent values as there are scans, or as there are runs.
+    # The number of independent values is that of the scans, or that of the runs.
     weight = number if independent_scans else (scans > 0).sum(axis=-1)
     expected = _divide(summed, number)
     low, high = _interval(expected * weight, weight, level)
@@ -401,17 +401,17 @@ def consistency(
 
 
 def _interval(freedom: Array, number: NDArray[np.int64], level: float) -> tuple[Array, Array]:
-    """Of the mean of so many values with so many degrees of freedom in all."""
+    """Interval of the mean of some values with the given degrees of freedom in total."""
     from scipy.special import gammaincinv
 
-    # Quantiles of chi-square; scipy.stats has them too, but takes seconds to import.
+    # Quantiles of chi-square from scipy.special: scipy.stats takes seconds to import.
     known = np.where(number > 0, freedom, np.nan)
     low, high = (2 * gammaincinv(known / 2, 0.5 + side * level / 2) for side in (-1, 1))
     return _divide(low, number), _divide(high, number)
 
 
 def _sums(values: ArrayLike, counts: ArrayLike) -> tuple[Array, NDArray[np.int64]]:
-    """Of each run, and how many scans it has, shape (..., runs) both."""
+    """Sum of each run and its number of scans, both of shape (..., runs)."""
     each = np.asarray(values, dtype=np.float64)
     good = np.asarray(counts) & ~np.isnan(each)
     return np.where(good, each, 0.0).sum(axis=-1), good.sum(axis=-1)
@@ -419,7 +419,7 @@ def _sums(values: ArrayLike, counts: ArrayLike) -> tuple[Array, NDArray[np.int64
 
 def _root(squares: Estimate) -> Estimate:
     value = np.sqrt(squares.value)
-    # An error that is 0 in every run is so without doubt.
+    # Errors that are 0 in every run have a standard error of 0.
     certain = squares.error == 0
     return Estimate(value, np.where(certain, 0.0, _divide(squares.error, 2 * value)))
 

@@ -65,7 +65,7 @@ def monte_carlo(
         Keeps finished chunks below its ``chunks``, so that a job that was interrupted can go on;
         made if it does not exist.
     resume : bool
-        Whether to go on with what `folder` holds, if it holds anything. More runs, or fewer, may
+        Whether to continue the job whose chunks `folder` holds, if any. More runs, or fewer, may
         be asked for than before.
 
     Returns
@@ -93,7 +93,7 @@ def monte_carlo(
 
     An error in a chunk, a broken process pool or an interrupt ends the job; chunks that are
     finished stay in `folder`. A Dask cluster may lose workers: their chunks are run again. A chunk
-    that fails on an executor is tried three times.
+    that fails on an executor is tried three times, except with a ValueError.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def monte_carlo(
     if folder is not None:
         store = ChunkStore.open(folder, scenario, trackers, seed, size, resume=resume)
     elif resume:
-        raise ValueError("resume: needs the folder of the job to go on with")
+        raise ValueError("resume: needs the folder of the job to continue")
 
     whole: dict[str, Array] = {}
     done = 0
@@ -149,7 +149,7 @@ def monte_carlo(
 
 
 def _chunk_runs(scenario: Scenario) -> int:
-    """Runs a chunk: of the scenario alone, so that any job can go on with the chunks of another."""
+    """Runs in a chunk; of the scenario only, so that jobs of any length share their chunks."""
     return max(1, min(_RUNS, _COORDINATES // (len(scenario.time) * scenario.n_axes)))
 
 
@@ -177,7 +177,7 @@ def _parts(
     executor: Executor | None,
     store: ChunkStore | None,
 ) -> Iterator[tuple[range, dict[str, Array]]]:
-    """All chunks, those that are stored first, the others as they finish."""
+    """All chunks: first the stored ones, then the others as they finish."""
     missing = []
     for chunk in chunks:
         stored = None if store is None else store.load(chunk)
@@ -233,7 +233,7 @@ def run_chunk(
             speeds = np.where(np.isnan(result.filtered), np.nan, result.velocity)
             part["velocity"][k] = _turned(speeds - moving)
         if scenario.process_sigma is not None:
-            nis, nees = _normalised(result, plots.sigma, true, scenario.process_sigma)
+            nis, nees = _normalized(result, plots.sigma, true, scenario.process_sigma)
             part["nis"][k], part["nees"][k] = nis.T, nees.T
         if runs.start == 0:
             _keep(part, k, result)
@@ -260,7 +260,7 @@ def _blank(
 
 
 def _keep(part: dict[str, Array], k: int, result: TrackResult) -> None:
-    """Tracker k's run 0."""
+    """Keep run 0 of tracker k."""
     gains = result.gains
     of_it = (result.predicted, result.filtered, gains.alpha, gains.beta, gains.gamma)
     for name, array in zip(_SAMPLED, of_it, strict=True):
@@ -272,12 +272,12 @@ def _by_run(values: Array) -> Array:
 
 
 def _turned(values: Array) -> Array:
-    """Runs first, then scans."""
+    """Values with the axis of runs before that of scans."""
     return values.swapaxes(0, 1)
 
 
 def _prepared(time: Array, plots: Plots) -> Plots:
-    """Plots as `prepare_start` makes them, at all times: which it drops depends on the runs."""
+    """Plots as `prepare_start` makes them, with NaN for the scans that it drops."""
     if np.isnan(plots.z).all():
         return plots
     left, begun = prepare_start(time, plots.z, plots.sigma)
@@ -285,13 +285,13 @@ def _prepared(time: Array, plots: Plots) -> Plots:
     return Plots(np.concatenate([before, begun.z]), np.concatenate([before, begun.sigma]))
 
 
-def _normalised(
+def _normalized(
     result: TrackResult, sigma: Array, true: Array, process_sigma: float
 ) -> tuple[Array, Array]:
     """NIS and NEES of position, shape (n_steps, runs); NaN for runs whose covariance is not known.
 
-    One run of which it is not known spoils a whole batch: then each is taken by itself, so that
-    what a run has does not depend on those beside it.
+    A batch is refused as a whole if the covariance of one of its runs is not known. Each run is
+    then taken by itself, so that its numbers do not depend on the others.
     """
     from fuzzytrack.trackers.covariance import track_covariance
 
@@ -305,7 +305,7 @@ def _normalised(
         everyone = np.broadcast_to(true, result.measured.shape)
         runs = [slice(k, k + 1) for k in range(count)]
         each = [
-            _normalised(_some(result, k), sigma[:, k], everyone[:, k], process_sigma) for k in runs
+            _normalized(_some(result, k), sigma[:, k], everyone[:, k], process_sigma) for k in runs
         ]
         nis, nees = (np.concatenate(part, axis=1) for part in zip(*each, strict=True))
         return nis, nees

@@ -47,7 +47,7 @@ class Tally:
         self.total = 0
 
     def number(self, value: float) -> Counted:
-        """A number on which operations are counted; a counted one as it is."""
+        """A number on which operations are counted; a counted number unchanged."""
         return value if isinstance(value, Counted) else Counted(value, self)
 
 
@@ -147,12 +147,12 @@ class Counted:
 
 
 def plain(value: Any) -> Any:
-    """The number behind a counted one; anything else as it is."""
+    """The value of a counted number; anything else unchanged."""
     return value.value if isinstance(value, Counted) else value
 
 
 def count_program(program: Callable[..., Any], *arguments: Any, **options: Any) -> tuple[int, Any]:
-    """Count the operations of a program that makes its numbers with ``number``.
+    """Count the operations of a function that makes its numbers with ``number``.
 
     Parameters
     ----------
@@ -287,7 +287,7 @@ def _plots(scans: int, n_axes: int) -> list[list[float]]:
 
 
 def _run(tracker: LaneTracker, plots: list[list[float]]) -> Iterator[tuple[bool, tuple[int, int]]]:
-    """For every scan of a lane: whether it was corrected, and operations of scheduler and rest."""
+    """For each scan of a lane: whether it was corrected, and counts of scheduler and rest."""
     n_axes = len(plots[0])
     program = tracker.program(n_axes)
     rows = program.rows
@@ -312,7 +312,7 @@ def _run(tracker: LaneTracker, plots: list[list[float]]) -> Iterator[tuple[bool,
 def _counting(
     function: Callable[..., Any], tally: Tally, inside: Tally, kernel: CodeType | None
 ) -> Callable[..., Any]:
-    """The function, and all that it calls, with constants and `math` that count.
+    """The function and all functions that it calls, with constants and `math` that count.
 
     What the function with the code `kernel` spends is added to `inside` as well.
     """
@@ -336,7 +336,7 @@ def _counting(
         names = _names(original.__code__)
         scope = {n: prepare(v) for n, v in original.__globals__.items() if n in names}
         cells = tuple(CellType(prepare(c.cell_contents)) for c in original.__closure__ or ())
-        # Literals count too, also where a select hands one on to an operation with another.
+        # Literals count too, since a select may pass one on to an operation with another.
         code = original.__code__
         code = code.replace(co_consts=tuple(prepare(c) for c in code.co_consts))
         copy = FunctionType(code, scope, original.__name__, original.__defaults__, cells)
@@ -356,7 +356,7 @@ def _counting(
 
 
 def _elementary(value: Any, tally: Tally) -> Any:
-    """A function of `math` made to count one operation; its constants, and all else, as they are.
+    """A function of `math` that counts as one operation; its constants and anything else unchanged.
 
     What asks or rounds is free.
     """

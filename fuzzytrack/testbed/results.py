@@ -1,4 +1,4 @@
-"""Outcome of a Monte Carlo experiment: errors of every tracker, run and scan, and what they say."""
+"""Results of a Monte Carlo experiment: errors of every tracker, run and scan, with statistics."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 __all__ = ["QUANTITIES", "Quantity", "Results", "Sample"]
 
 
-#: What a tracker's errors are of.
+#: Quantity whose errors are taken.
 Quantity = Literal["predicted", "filtered", "velocity"]
 QUANTITIES: tuple[Quantity, ...] = ("predicted", "filtered", "velocity")
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """One run in full, to look at.
+    """One run in full.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Results:
     measured : ndarray, shape (runs, n_steps, n_axes)
         Plot minus true position (m); NaN where missed.
     nis, nees : ndarray, shape (n_trackers, runs, n_steps), or None
-        Normalised innovation squared, and normalised estimation error squared of position, summed
+        Normalized innovation squared, and normalized estimation error squared of position, summed
         over axes, where the scenario presumes a `process_sigma`; NaN for runs of a tracker whose
         covariance that alone does not tell (γ, one-point start, a recursion of its own).
     sample : Sample
@@ -127,7 +127,7 @@ class Results:
 
     @cached_property
     def scored(self) -> Mask:
-        """Scans that count: compared ones from `first_scored` on, shape (runs, n_steps)."""
+        """Scans that count: those `compared`, from `first_scored` on, shape (runs, n_steps)."""
         return self.compared & (np.arange(len(self.time)) >= self.first_scored)
 
     @property
@@ -137,7 +137,7 @@ class Results:
 
     @property
     def empty_runs(self) -> int:
-        """Number of runs in which no scan counts; they are left out of everything."""
+        """Number of runs in which no scan counts; all statistics leave them out."""
         return int((self.scored_scans == 0).sum())
 
     @property
@@ -211,7 +211,7 @@ class Results:
         return metrics.per_scan(self._squares(quantity), self.compared).error
 
     def npe(self, sigma: float, quantity: Quantity = "predicted") -> Array:
-        """Normalised position error: `rmse_per_scan` per standard deviation of the plots.
+        """Normalized position error: `rmse_per_scan` per standard deviation of the plots.
 
         Parameters
         ----------
@@ -262,7 +262,7 @@ class Results:
         quantity: Quantity = "predicted",
         of: Literal["rmse", "mean"] = "rmse",
     ) -> PairedDifference:
-        """What the error of one tracker is above another's, run by run.
+        """Difference between the errors of two trackers, run by run.
 
         Parameters
         ----------
@@ -282,8 +282,8 @@ class Results:
 
         Notes
         -----
-        Both saw the same plots, so most of what luck does to the one it does to the other: the
-        interval is narrower than the errors of the two by themselves would have it.
+        Both saw the same plots, so their errors are correlated, and the interval is narrower than
+        that of the difference of two independent errors.
         """
         if of not in ("rmse", "mean"):
             raise ValueError(f"of: unknown {of!r}; one of rmse, mean")
@@ -308,7 +308,7 @@ class Results:
         """NIS against the chi-square distribution; None where there is no NIS."""
         if self.nis is None:
             return None
-        # An axis has an innovation where it has both.
+        # An axis has an innovation where it has a prediction and a plot.
         axes = (~np.isnan(self.predicted) & ~np.isnan(self.measured)).sum(axis=-1)
         return metrics.consistency(self.nis, axes, self.scored, independent_scans=True, level=level)
 

@@ -93,7 +93,7 @@ def data_frame(names: Sequence[str], time: Array, curves: Mapping[str, Array]) -
 
 
 def _plain(value: Any) -> Any:
-    """The same without numbers that are not finite."""
+    """Value with None for every number that is not finite."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list):

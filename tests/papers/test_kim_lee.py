@@ -26,25 +26,25 @@ PUBLISHED, LITERAL = "published, σ_Q = 5", "published, unit Q"
     ("tracker", "quantity", "value", "within", "spread"),
     [
         # spread: standard deviation over runs of the quantity, generously
-        (FIXED, "position, manoeuvre (m)", 428, 5, 30),
+        (FIXED, "position, maneuver (m)", 428, 5, 30),
         (FIXED, "position, quiet (m)", 107, 3, 25),
         (FIXED, "position, peak (m)", 945, 12, 60),
         (FIXED, "position, time of the peak (s)", 77, 1, 0),
         (FIXED, "velocity, peak (m/s)", 335, 5, 10),
         (FIXED, "velocity, time of the peak (s)", 35, 0, 0),
         (PUBLISHED, "position, mean (m)", 110.5, 1.5, 14),
-        (PUBLISHED, "position, manoeuvre (m)", 133.5, 3, 28),
+        (PUBLISHED, "position, maneuver (m)", 133.5, 3, 28),
         (PUBLISHED, "position, quiet (m)", 103.3, 2, 22),
         (PUBLISHED, "position, peak (m)", 167, 8, 120),
         (PUBLISHED, "velocity, quiet (m/s)", 46, 2, 20),
         ("self-consistent", "position, mean (m)", 114.8, 1.5, 15),
-        ("self-consistent", "position, manoeuvre (m)", 140.5, 3, 28),
+        ("self-consistent", "position, maneuver (m)", 140.5, 3, 28),
         ("self-consistent", "position, quiet (m)", 107.2, 2, 24),
         ("self-consistent", "position, peak (m)", 191, 9, 130),
         (LITERAL, "NPE, mean", 0.91, 0.015, 0.09),
         (LITERAL, "velocity, quiet (m/s)", 268, 8, 80),
         ("default", "position, mean (m)", 113.3, 1.5, 15),
-        ("default", "position, manoeuvre (m)", 135.5, 2.5, 27),
+        ("default", "position, maneuver (m)", 135.5, 2.5, 27),
         ("default", "position, quiet (m)", 101.8, 2, 24),
         ("default", "position, peak (m)", 163, 8, 120),
         (FITTED, "NPE, largest", 0.97, 0.03, 0.7),
@@ -65,7 +65,7 @@ def test_the_largest_speed_is_exact(found):
     assert found.ours("largest true speed (m/s)") == pytest.approx(610.5, abs=1e-9)
 
 
-def test_the_adjusted_noise_follows_the_manoeuvre(found):
+def test_the_adjusted_noise_follows_the_maneuver(found):
     for tracker in (PUBLISHED, "self-consistent", "default"):
         quiet = found.ours(f"{tracker}: median σ_v, 48-65 s (m/s²)")
         assert found.ours(f"{tracker}: median σ_v, 36-40 s (m/s²)") > 1.5 * quiet

@@ -148,16 +148,16 @@ def test_table_2_4(rows):
 
 
 REGION = {
-    ("Table 5.1", "centre of gravity"): (
+    ("Table 5.1", "center of gravity"): (
         (0.2603, 0.3397), (0.5761, 0.8539), (0.4386, 0.6843), (0.1843, 0.2737), (0.6843, 0.2722),
     ),
-    ("Table 5.1", "weighted centres"): (
+    ("Table 5.1", "weighted centers"): (
         (0.25, 0.35), (0.54, 0.89), (0.4053, 0.7138), (0.1725, 0.2807), (0.7138, 0.2807),
     ),
-    ("Table 5.2", "centre of gravity"): (
+    ("Table 5.2", "center of gravity"): (
         (0.2618, 0.7382), (0.134, 1.166), (0.123, 1.054), (0.180, 0.947), (1.054, 0.667),
     ),
-    ("Table 5.2", "weighted centres"): (
+    ("Table 5.2", "weighted centers"): (
         (0.2, 0.8), (0.0, 1.3), (0.0, 1.118), (0.115, 1.059), (1.118, 0.688),
     ),
 }  # fmt: skip
@@ -196,7 +196,7 @@ def test_gains_visited(found):
 def test_operation_counts(found):
     assert found.ours("tracker 1, fixed α-β (operations)") == 472
     assert found.ours("tracker 2, fixed α-β-γ (operations)") == 976
-    assert 2063 <= found.ours("tracker 4, proposed, centre of gravity (operations)") <= 2250
+    assert 2063 <= found.ours("tracker 4, proposed, center of gravity (operations)") <= 2250
     scalar = found.ours("tracker 5, Kalman written out (operations)")
     assert found.ours("tracker 5, Kalman in matrices, Joseph form (operations)") / scalar >= 4
     assert found.ours("published Kalman over Kalman written out") >= 4

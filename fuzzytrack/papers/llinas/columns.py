@@ -23,14 +23,14 @@ class Columns:
     levels : tuple
         ``levels[output][i][j]``: the weights of the output's sets where the inputs are at grid
         points i and j, for the centroid with the area of each set in them.
-    centres : tuple
-        ``centres[output]``: the sets' centroids.
+    centers : tuple
+        ``centers[output]``: the sets' centroids.
     """
 
     low: tuple[float, float]
     step: tuple[float, float]
     levels: tuple[list[list[list[float]]], ...]
-    centres: tuple[list[float], ...]
+    centers: tuple[list[float], ...]
 
 
 def columns(rules: RuleBase) -> Columns:
@@ -55,7 +55,7 @@ def columns(rules: RuleBase) -> Columns:
         v.name: v.memberships()[:, places] for v, places in zip(rules.inputs, cells, strict=True)
     }
     strength = strengths(rules, grades)
-    levels, centres = [], []
+    levels, centers = [], []
     for output in rules.outputs:
         about = conclusions(rules, output)
         area = about.grades.sum(axis=1)
@@ -64,8 +64,8 @@ def columns(rules: RuleBase) -> Columns:
             called[:, term] += strength[:, rule] * confidence
         table = (called * area).reshape(len(grids[0]), len(grids[1]), len(area))
         levels.append(table.tolist())
-        centres.append((about.grades @ about.y / area).tolist())
+        centers.append((about.grades @ about.y / area).tolist())
     first, second = (v.universe for v in rules.inputs)
     return Columns(
-        (first.first, second.first), (first.step, second.step), tuple(levels), tuple(centres)
+        (first.first, second.first), (first.step, second.step), tuple(levels), tuple(centers)
     )

@@ -70,7 +70,7 @@ _FAR = {
 }  # fmt: skip
 
 _PUBLISHED_RUNS = 50
-# Runs for what is known to an order of magnitude only, and for gains.
+# Runs for gains, and for numbers that are known to an order of magnitude only.
 _FEW = 48
 
 
@@ -95,7 +95,7 @@ def _scheduler(name: str) -> FuzzyScheduler:
 
 # -------------------------------------------------------------------- targets
 
-# The fit of `fuzzytrack.simulation.published.llinas_maneuver`, for other times than its own.
+# The fit of `fuzzytrack.simulation.published.llinas_maneuver`, at other times.
 _SPEED, _ACCELERATION, _RADIUS = 6.0, 0.004, 4500.0
 _HEADINGS = {"M1": 330.0, "M2": 240.0, "M3": 65.0, "M4": 85.0}
 
@@ -107,7 +107,7 @@ def maneuver(
     start: Sequence[float] | None = None,
     heading: float | None = None,
 ) -> tuple[Array, Array]:
-    """A maneuver of `llinas_maneuver` with scans as one likes.
+    """A maneuver of `llinas_maneuver` with any times of scans.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def _result_rows(
     variances: Iterable[float],
     why: str = "",
 ) -> list[Row]:
-    """Means and variances; the published ones have the chance error of 50 such runs."""
+    """Rows of means and variances; the tolerance is the standard error of the published 50 runs."""
     rows = []
     quantities = (
         ("mean error (m)", results.mean_error(), results.mean_error_se(), means),
@@ -204,7 +204,7 @@ def _ratio_row(name: str, results: Results) -> Row:
     means, errors = results.mean_error(), results.mean_error_se()
     published = _TABLE_5_3[name][0]
     paired = results.paired_difference(T1, T4, of="mean").standard_error
-    # Whether the report's runs of two trackers shared their noise is not said.
+    # The report does not say whether the runs of two trackers shared their noise.
     apart = math.hypot(errors[first], errors[fourth]) * math.sqrt(results.runs / _PUBLISHED_RUNS)
     return row(
         "Table 5.3",
@@ -253,7 +253,7 @@ def far_rows(runs: int, seed: int, progress: Progress) -> list[Row]:
             progress(done / (len(_FAR) * len(MANEUVERS)))
         ours = np.mean(found, axis=0)
         for label, value, number in zip(everyone, ours.tolist(), published.tolist(), strict=True):
-            # Half a decade either way
+            # A factor of √10 to either side
             factor = math.sqrt(10.0)
             within = number * ((factor - 1) if value > number else (1 - 1 / factor))
             rows.append(
@@ -272,8 +272,8 @@ _TRACKS = 24
 
 
 def _far_scenario(name: str, spacing: str) -> Scenario:
-    """Random tracks that begin at a sensor of the inner field and are seen 5 times at least."""
-    # Not of the seed: they belong to the experiment.
+    """Random tracks that begin at a sensor of the inner field and have at least 5 plots."""
+    # With a fixed seed, since the tracks are part of the experiment.
     rng = np.random.default_rng(1998)
     field, steps = canonical_field(SPACINGS[spacing]), _SCANS[spacing]
     inner = field.position[np.abs(field.position).max(axis=1) <= 1.5 * SPACINGS[spacing]]
@@ -292,7 +292,7 @@ def _far_scenario(name: str, spacing: str) -> Scenario:
 
 
 def isotropic_rows(runs: int, seed: int) -> list[Row]:
-    """The same targets with equal noise on both axes and nothing missed: a check, not published.
+    """Rows of a check that is not published: the same targets, equal noise on both axes, no misses.
 
     Trackers that are linear have an exact mean; tracker 1 is simulated too, beside tracker 4.
     """
@@ -321,12 +321,12 @@ def isotropic_rows(runs: int, seed: int) -> list[Row]:
 def visited_gains(runs: int, seed: int) -> dict[str, Gains]:
     """Gains of the proposed tracker in the four maneuvers, by table of limits.
 
-    With the centre of gravity; each array has shape (n,), NaN where there was no update.
+    With the center of gravity; each array has shape (n,), NaN where there was no update.
     """
     found = {}
     for name, rules in rule_bases().items():
         table, engine = name.split(", ")
-        if engine != "centre of gravity":
+        if engine != "center of gravity":
             continue
         tracker = AlphaBetaTracker(FuzzyScheduler(rules))
         parts = [_gains(tracker, each, runs, seed) for each in MANEUVERS]
@@ -347,7 +347,7 @@ def _gains(
 
 
 def visited_rows(found: dict[str, Gains], runs: int) -> list[Row]:
-    """Figs. 5.2 and 5.3: where the gains are."""
+    """Rows of Figs. 5.2 and 5.3: the region of the gains."""
     figures = {"Table 5.1": "Fig. 5.2", "Table 5.2": "Fig. 5.3"}
     rows = []
     for table, gains in found.items():

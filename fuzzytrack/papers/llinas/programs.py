@@ -1,4 +1,4 @@
-"""The trackers of Llinas et al. (1998), equation by equation, to count what they cost (Table 5.7).
+"""Trackers of Llinas et al. (1998), equation by equation, to count their operations (Table 5.7).
 
 Each program tracks plots of two axes and takes the distance of every prediction from the target.
 Its numbers all pass through `number`, so that `fuzzytrack.testbed.operations.count_program` can
@@ -45,7 +45,7 @@ Matrix = list[list[Any]]
 
 @dataclass
 class _Axis:
-    """Plots of an axis, and what is known of the target on it."""
+    """Plots of an axis, and the state of the target on it."""
 
     plots: list[Any]
     truth: list[Any]
@@ -59,7 +59,7 @@ class _Axis:
 
 @dataclass(frozen=True)
 class Run:
-    """What a program returns, from the third scan on.
+    """Result of a program, from the third scan on.
 
     Attributes
     ----------
@@ -214,7 +214,7 @@ def chan(
     rules: Callable[[tuple[float, float]], tuple[float, ...]],
     number: Number = float,
 ) -> Run:
-    """Chan's tracker: one pair of gains for both axes, from magnitudes of the normalised error.
+    """Chan's tracker: one pair of gains for both axes, from magnitudes of the normalized error.
 
     Parameters are those of `alpha_beta`, but for the gains `rules`: function of the magnitudes of
     error and error rate (Eqs. 3.20 and 3.21) to α and β. Like the toolbox call of the report it
@@ -258,7 +258,7 @@ def proposed(
     axes = _axes(plots, truth, number)
     t = number(dt)
     low, step = ([number(v) for v in pair] for pair in (table.low, table.step))
-    centres = [[number(v) for v in centre] for centre in table.centres]
+    centers = [[number(v) for v in center] for center in table.centers]
     output = _weighted_sum if weighted_sum else _centroid
     _start(axes, t)
     for axis in axes:
@@ -273,25 +273,25 @@ def proposed(
             error, rate = _normalized(axis, scan)
             i, j = round((error - low[0]) / step[0]), round((rate - low[1]) / step[1])
             cells = [[number(v) for v in levels[i][j]] for levels in table.levels]
-            stiffness, damping = (output(c, y) for c, y in zip(cells, centres, strict=True))
+            stiffness, damping = (output(c, y) for c, y in zip(cells, centers, strict=True))
             alpha = 4 * damping * stiffness / (2 * damping * stiffness + stiffness**2 + 1)  # 3.26
             beta = 4 * stiffness**2 / (2 * damping * stiffness + stiffness**2 + 1)
             _smooth(axis, scan, t, alpha, beta)
     return _result(axes, distances)
 
 
-def _weighted_sum(levels: list[Any], centres: list[Any]) -> Any:
-    total = levels[0] * centres[0]
-    for level, centre in zip(levels[1:], centres[1:], strict=True):
-        total = total + level * centre
+def _weighted_sum(levels: list[Any], centers: list[Any]) -> Any:
+    total = levels[0] * centers[0]
+    for level, center in zip(levels[1:], centers[1:], strict=True):
+        total = total + level * center
     return total
 
 
-def _centroid(levels: list[Any], centres: list[Any]) -> Any:
+def _centroid(levels: list[Any], centers: list[Any]) -> Any:
     area = levels[0]
     for level in levels[1:]:
         area = area + level
-    return _weighted_sum(levels, centres) / area
+    return _weighted_sum(levels, centers) / area
 
 
 # ---------------------------------------------------------------- Kalman filters
@@ -306,7 +306,7 @@ def kalman_matrix(
     joseph: bool = False,
     number: Number = float,
 ) -> Run:
-    """Kalman filter of each axis in matrices, full as they are.
+    """Kalman filter of each axis with full matrices.
 
     Started as `fuzzytrack.schedulers.KalmanCV` is from two plots.
 
@@ -355,7 +355,7 @@ def kalman_matrix(
 def kalman_scalar(
     plots: Plots, truth: Plots, dt: float, sigma: float, sigma_v: float, number: Number = float
 ) -> Run:
-    """The filter of `kalman_matrix`, written out in its five numbers an axis."""
+    """The filter of `kalman_matrix`, written out in scalars, five an axis."""
     axes = _axes(plots, truth, number)
     (p0, q0), r = _kalman_start(dt, sigma, sigma_v), number(sigma**2)
     t, q11, q12, q22 = (number(v) for v in (dt, q0[0][0], q0[0][1], q0[1][1]))
@@ -394,7 +394,7 @@ def _two_points(axis: _Axis, dt: float, number: Number) -> Matrix:
 
 
 def _times(a: Matrix, b: Matrix) -> Matrix:
-    """Product as a machine does it: 2mnp operations, the sums begun at 0."""
+    """Matrix product in 2mnp operations, with sums that begin at 0."""
     product = []
     for row in a:
         sums = [0.0] * len(b[0])

@@ -60,7 +60,7 @@ def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
 
 _NOTES = (
     "Starts, courses, speeds, acceleration and radius of the maneuvers are not in print; ours are "
-    "a fit to Table 5.3, about 20 numbers for its 40. What does not hang on the fit is which "
+    "a fit to Table 5.3, about 20 numbers for its 40. Two results do not depend on the fit: which "
     "tracker is ahead in which maneuver, and that trackers 1 and 4 are level.",
     "A published mean or variance matches if it is within two standard errors of an average over "
     "50 runs, the report's number, taken from the spread of our runs, and two of our own.",
@@ -82,7 +82,7 @@ _NOTES = (
 def _pictures(dense: dict[str, Results], visited: dict[str, Gains]) -> dict[str, Draw]:
     rules = theory.rule_bases()
     regions = {
-        f"{figure}-gains": _region(table, visited[table], rules[f"{table}, centre of gravity"])
+        f"{figure}-gains": _region(table, visited[table], rules[f"{table}, center of gravity"])
         for figure, table in (("fig5-2", "Table 5.1"), ("fig5-3", "Table 5.2"))
     }
     errors = {f"error-{name.lower()}": _errors(results) for name, results in dense.items()}

@@ -1,4 +1,4 @@
-"""Llinas et al. (1998): gains and sampling time, process noise, and whence the "optimal" gains.
+"""Llinas et al. (1998): gains and sampling time, process noise, origin of the "optimal" gains.
 
 A filter whose gains do not depend on the plots is linear. The error of its prediction is that
 without noise plus the noise it lets through, and both are known without drawing any.
@@ -123,7 +123,7 @@ def noise_errors(alpha: float, beta: float, steps: int) -> Array:
     steps : int
         Number of scans, at least 3.
     """
-    # Innovation by a unit plot at scan 2, at scans 2, 3, …; a later one has the same, later.
+    # Response of the innovation at scans 2, 3, … to a unit plot at scan 2; later ones are shifted.
     impulse = np.zeros(steps + 2)
     impulse[2] = 1.0
     response = second_differences_filtered(alpha, beta, impulse)[: steps - 2]
@@ -154,7 +154,7 @@ def optimal_gains_of_run(steps: int) -> tuple[tuple[float, float], float]:
 def _least(
     cost: Callable[[float, float], float], start: tuple[float, float] = PUBLISHED
 ) -> tuple[tuple[float, float], float]:
-    """Gains of least cost; sought in frequency and damping, where all positive ones are stable."""
+    """Gains of least cost, searched in frequency and damping, which are stable if positive."""
     from scipy.optimize import minimize
 
     def in_logarithms(point: Array) -> float:
@@ -228,7 +228,7 @@ def _weighted_tracks(period: float, steps: int, nodes: int) -> Iterator[tuple[fl
 
     speeds, accelerations = spread(3, 9), spread(0.002, 0.006)
     radii = spread(2500, 7000)
-    # On a straight line the speed makes no error.
+    # On a straight line the speed causes no error.
     for w, acceleration in [(1.0, 0.0), *accelerations]:
         _, position = constant_acceleration(
             speed=6.0, acceleration=acceleration, steps=steps, period=period
@@ -261,7 +261,7 @@ def origin_rows() -> list[Row]:
     return rows
 
 
-# The minimum is flat: gains this far off cost 0.1 %.
+# The minimum is flat: gains that deviate this much cost 0.1 %.
 _FLAT = 0.02
 _ORIGIN = (
     "best for the mean deviation of the predictions after a two-point start; in the long run small "
@@ -309,7 +309,7 @@ _APPENDIX = (
 
 
 def _lowest(x: Array, y: Array) -> tuple[float, float]:
-    """Lowest point of the parabola through the lowest value and its neighbours."""
+    """Lowest point of the parabola through the lowest value and its neighbors."""
     k = min(max(int(np.argmin(y)), 1), len(y) - 2)
     curve = np.polynomial.Polynomial.fit(x[k - 1 : k + 2], y[k - 1 : k + 2], 2)
     at = float(curve.deriv().roots()[0])
@@ -317,7 +317,7 @@ def _lowest(x: Array, y: Array) -> tuple[float, float]:
 
 
 def sampling_rows() -> list[Row]:
-    """Section 5.2: what a mapping of the gains to the sampling time is worth."""
+    """Section 5.2: effect of a mapping of the gains to the sampling time."""
     rows = []
     for length in (1200.0, 3600.0):
         rows += _mapping_rows(length)

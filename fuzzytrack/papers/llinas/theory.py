@@ -43,7 +43,7 @@ def noise_rows(runs: int, seed: int) -> list[Row]:
         for of, (name, number) in outputs.items()
     ]  # fmt: skip
     noise = np.random.default_rng(seed).normal(size=(_STEPS, runs))
-    # The plots of a target at rest are noise; the prediction is what the innovation leaves of it.
+    # Plots of a target at rest are noise, so plot minus innovation is the error of the prediction.
     predicted = noise[2:] - second_differences_filtered(_ALPHA, _BETA, noise)
     each = (predicted[_SETTLED:] ** 2).mean(axis=0)
     se = float(each.std(ddof=1) / np.sqrt(runs)) if runs > 1 else None
@@ -70,19 +70,19 @@ def map_rows() -> list[Row]:
 
 
 def rule_bases() -> dict[str, RuleBase]:
-    """Rule base of Tables 5.1 and 5.2, by table and by defuzzification."""
+    """Rule bases of Tables 5.1 and 5.2, by table and defuzzification."""
     wide = load_rulebase("stiffness-damping-wide")
     centroid = replace(wide.operators, defuzzification="centroid")
     return {
-        "Table 5.1, centre of gravity": load_rulebase("stiffness-damping-cog"),
-        "Table 5.1, weighted centres": load_rulebase("stiffness-damping"),
-        "Table 5.2, centre of gravity": replace(wide, operators=centroid),
-        "Table 5.2, weighted centres": wide,
+        "Table 5.1, center of gravity": load_rulebase("stiffness-damping-cog"),
+        "Table 5.1, weighted centers": load_rulebase("stiffness-damping"),
+        "Table 5.2, center of gravity": replace(wide, operators=centroid),
+        "Table 5.2, weighted centers": wide,
     }
 
 
 def region_rows() -> list[Row]:
-    """Tables 5.1 and 5.2: what the rules reach of their limits, on the grid of their inputs."""
+    """Tables 5.1 and 5.2: gains that the rules reach within their limits, on the grid of inputs."""
     return [found for name, rules in rule_bases().items() for found in _reached(name, rules)]
 
 
@@ -90,10 +90,10 @@ def _reached(name: str, rules: RuleBase) -> Iterator[Row]:
     table, engine = name.split(", ")
     grids = np.meshgrid(*(v.universe.values for v in rules.inputs), indexing="ij")
     points = np.stack([grid.ravel() for grid in grids], axis=1)
-    # On grid points this is what the report's relational matrix gives.
+    # On grid points this equals the report's relational matrix.
     outputs = FuzzySystem(rules).evaluate(np.concatenate([points, np.zeros((1, 2))]))
     outputs["α"], outputs["β"] = alpha_beta_from_w(outputs["stiffness"], outputs["damping"])
-    why = _HALF if engine == "centre of gravity" else ""
+    why = _HALF if engine == "center of gravity" else ""
     for output in ("stiffness", "damping", "α", "β"):
         grid = outputs[output][:-1]
         limits: tuple[float | None, float | None] = (None, None)
@@ -110,7 +110,7 @@ def _reached(name: str, rules: RuleBase) -> Iterator[Row]:
 
 
 _HALF = (
-    "the limits are those of the universe; the outer sets are half triangles, whose centre of "
+    "the limits are those of the universe; the outer sets are half triangles, whose center of "
     "gravity lies a tenth of the range inside"
 )
 
@@ -147,7 +147,7 @@ def operation_rows() -> list[Row]:
              published=974, within=2, why=_START),
         said("tracker 3, Chan-style without its rules (operations)",
              counted(programs.chan, gains), published=941, why=_CHAN),
-        said("tracker 4, proposed, centre of gravity (operations)",
+        said("tracker 4, proposed, center of gravity (operations)",
              counted(programs.proposed, table), published=2287, why=_PROPOSED),
         said("tracker 4, proposed, weighted sum (operations)", weighted,
              published=2287, why=_PROPOSED),
@@ -191,11 +191,11 @@ def _plots() -> tuple[list[list[float]], list[list[float]]]:
 
 _START = "one start of an axis (2) is not in the report's count"
 _CHAN = (
-    "the report leaves its toolbox's rules out, too; how its program normalises and takes "
+    "the report leaves its toolbox's rules out, too; how its program normalizes and takes "
     "magnitudes is not printed"
 )
 _PROPOSED = (
-    "the report counts 54 for a fuzzy evaluation; from which grid and which form of the centre is "
+    "the report counts 54 for a fuzzy evaluation; from which grid and which form of the center is "
     "not printed"
 )
 _KALMAN = (
