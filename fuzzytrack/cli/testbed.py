@@ -25,12 +25,12 @@ from fuzzytrack.workers import workers
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["experiment"]
+__all__ = ["testbed"]
 
 _FILES = ("results.json", "report.html")
 
 
-def experiment(
+def testbed(
     scenario: options.ScenarioOrNone = None,
     trackers: Annotated[
         str | None,
