@@ -23,7 +23,7 @@ COMMANDS = {
     ),
     "compare": ("compare:compare", "Compare trackers on a true track with simulated noise."),
     "testbed": (
-        "testbed:testbed",
+        "testbed:experiment",
         "Run trackers on many random draws of a scenario.",
     ),
     "simulate": (

@@ -25,12 +25,12 @@ from fuzzytrack.workers import workers
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["testbed"]
+__all__ = ["experiment"]
 
 _FILES = ("results.json", "report.html")
 
 
-def testbed(
+def experiment(
     scenario: options.ScenarioOrNone = None,
     trackers: Annotated[
         str | None,
