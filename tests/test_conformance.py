@@ -1,4 +1,4 @@
-"""Every scheduler and every tracker keeps its contract: one test for all."""
+"""Every scheduler and every tracker keeps its contract: each check is a test."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from fuzzytrack.schedulers import (
     QualityGains,
     schedulers,
 )
-from fuzzytrack.testing import check_scheduler, check_tracker
+from fuzzytrack.testing import parametrize_with_checks
 from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch, trackers
 
 
@@ -67,12 +67,9 @@ TRACKERS = {
 }
 
 
-@pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])
-def test_it_keeps_its_contract(name):
-    if name in SCHEDULERS:
-        check_scheduler(SCHEDULERS[name])
-    else:
-        check_tracker(TRACKERS[name])
+@parametrize_with_checks({**SCHEDULERS, **TRACKERS})
+def test_contract(check):
+    check()
 
 
 @pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])

@@ -1,5 +1,6 @@
 """The conformance kit must fail what breaks the contract."""
 
+import math
 import random
 from dataclasses import dataclass, replace
 
@@ -8,10 +9,10 @@ import pytest
 
 import fuzzytrack as ft
 from fuzzytrack.schedulers import GainScheduler, KalmanCV
-from fuzzytrack.testing import check_scheduler, check_tracker
+from fuzzytrack.testing import check_scheduler, check_tracker, checks_for, parametrize_with_checks
 
 
-def scheduler_of(kernel, memory=(), frozen=True):
+def scheduler_of(kernel, memory=(), **attributes):
     class Made(GainScheduler):
         def initial_memory(self, n_axes):
             return memory
@@ -25,10 +26,15 @@ def scheduler_of(kernel, memory=(), frozen=True):
         def __hash__(self):
             return 0
 
-        def __reduce__(self):
-            return scheduler_of, (kernel, memory)
-
+    for name, value in attributes.items():
+        setattr(Made, name, value)
     return Made()
+
+
+def run_check(name, subject):
+    """Run the one check of that name."""
+    (check,) = (check for check in checks_for(subject) if check.name == name)
+    check()
 
 
 def fixed(innovation, change, dt, sigma, memory):
@@ -70,9 +76,11 @@ class Unequal(GainScheduler):
 @pytest.mark.parametrize(
     ("scheduler", "promise"),
     [
-        (0.5, "must be a GainScheduler"),
-        (Unhashable(), "Unhashable must be hashable: make it a frozen dataclass"),
-        (Unequal(), "Unequal must equal its pickled copy"),
+        (0.5, "must be a GainScheduler, got a float"),
+        (ft.FixedGains, r"got the class FixedGains; give an object, as FixedGains\(\) makes it"),
+        (Unhashable(), "^hashable: Unhashable must be hashable: make it a frozen dataclass"),
+        (Unequal(), "^equals-pickled-copy: Unequal must equal its pickled copy"),
+        (scheduler_of(fixed), "Made must pickle .*: define the class at the top of a module"),
     ],
 )
 def test_a_scheduler_is_a_value(scheduler, promise):
@@ -87,21 +95,235 @@ def test_a_scheduler_is_a_value(scheduler, promise):
         (four_answers, (), "must return alpha, beta, gamma, phi, memory"),
         (grows_to_infinity, (), "gains and memory must be finite floats"),
         (gambles, (), "must depend on nothing else"),
+        (divides, (), r"innovation 0, change 0: raises ZeroDivisionError .* guard its own divis"),
     ],
 )
-def test_kernels(kernel, memory, promise, monkeypatch):
-    made = scheduler_of(kernel, memory)
-    # A local class does not pickle by itself; its equality is not what is tested here.
-    monkeypatch.setattr("fuzzytrack.testing.pickle.loads", lambda data: made)
-    with pytest.raises(AssertionError, match=promise):
-        check_scheduler(made)
+def test_what_a_kernel_returns(kernel, memory, promise):
+    with pytest.raises(AssertionError, match=f"^kernel-answers-in-form: kernel at .*{promise}"):
+        run_check("kernel-answers-in-form", scheduler_of(kernel, memory))
 
 
-def test_a_kernel_guards_its_divisions(monkeypatch):
-    made = scheduler_of(divides)
-    monkeypatch.setattr("fuzzytrack.testing.pickle.loads", lambda data: made)
-    with pytest.raises(ZeroDivisionError):
-        check_scheduler(made)
+def test_gamma_needs_a_declaration():
+    made = scheduler_of(lambda e, d, dt, s, m: (0.5, 0.2, 0.01, 1.0, m), uses_acceleration=False)
+    with pytest.raises(AssertionError, match="gamma must be 0 unless uses_acceleration is set"):
+        run_check("kernel-answers-in-form", made)
+
+
+# -------------------------------------------------------------------- arguments and words
+
+
+def of_three(innovation, dt, memory):
+    return 0.5, 0.2, 0.0, 1.0, memory
+
+
+class WithMethod(GainScheduler):
+    alpha = 0.5
+
+    def kernel(self, n_axes):
+        return self.kernel_of_mine
+
+    def kernel_of_mine(self, innovation, change, dt, sigma, memory):
+        return self.alpha, 0.2, 0.0, 1.0, memory
+
+
+def test_a_kernel_has_five_arguments():
+    expected = (
+        r"^kernel-takes-five-arguments: the kernel must take the five arguments \(innovation, "
+        r"change, dt, sigma, memory\), takes \(innovation, dt, memory\)$"
+    )
+    with pytest.raises(AssertionError, match=expected):
+        run_check("kernel-takes-five-arguments", scheduler_of(of_three))
+    with pytest.raises(AssertionError, match="must return a plain function, got a method: define"):
+        run_check("kernel-takes-five-arguments", WithMethod())
+
+
+LIMIT = 2.0
+TABLE = (0.5, (0.2, "word"), None)
+NUMBERS = np.array([0.5, 0.2])
+
+
+def helper(number):
+    return min(abs(number), LIMIT) * math.pi
+
+
+def deep_helper(number):
+    return np.tanh(number)
+
+
+class WithSelf(GainScheduler):
+    alpha = 0.5
+
+    def kernel(self, n_axes):
+        alpha, count = self.alpha, 0
+
+        def good(innovation, change, dt, sigma, memory):
+            inner = tuple(helper(m) for m in memory)
+            scaled = max([helper(m) for m in inner] or [float(NUMBERS[0])])
+            return alpha, TABLE[1][0], math.sqrt(scaled) * 0.0, 1.0, memory
+
+        def of_self(innovation, change, dt, sigma, memory):
+            return self.alpha, 0.2, 0.0, 1.0, memory
+
+        def of_numpy(innovation, change, dt, sigma, memory):
+            return np.clip(innovation, 0.0, 1.0), 0.2, 0.0, 1.0, memory
+
+        def through_a_helper(innovation, change, dt, sigma, memory):
+            return deep_helper(innovation), 0.2, 0.0, 1.0, memory
+
+        def of_a_function_of_numpy(innovation, change, dt, sigma, memory):
+            return tanh(innovation), 0.2, 0.0, 1.0, memory
+
+        def of_another_module(innovation, change, dt, sigma, memory):
+            return (lambda: random.random())(), 0.2, 0.0, 1.0, memory
+
+        def of_a_class(innovation, change, dt, sigma, memory):
+            return WithSelf.alpha, 0.2, 0.0, 1.0, memory
+
+        def of_nothing(innovation, change, dt, sigma, memory):
+            return no_such_name, 0.2, 0.0, 1.0, memory  # noqa: F821
+
+        def of_later(innovation, change, dt, sigma, memory):
+            return later, 0.2, 0.0, 1.0, memory
+
+        def importing(innovation, change, dt, sigma, memory):
+            import cmath
+
+            return cmath.phase(innovation), 0.2, 0.0, 1.0, memory
+
+        def counting(innovation, change, dt, sigma, memory):
+            nonlocal count
+            count += 1
+            return 0.5, 0.2, 0.0, 1.0, memory
+
+        def changing(innovation, change, dt, sigma, memory):
+            global LIMIT
+            LIMIT = innovation
+            return 0.5, 0.2, 0.0, 1.0, memory
+
+        tanh = np.tanh
+        if n_axes == "never":
+            later = 1.0
+        return locals()[n_axes] if isinstance(n_axes, str) else of_self
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [
+        ("of_self", "uses 'self.alpha', where 'self' is a WithSelf"),
+        ("of_numpy", "uses 'np.clip' of the module numpy"),
+        ("through_a_helper", "uses 'np.tanh' of the module numpy"),
+        ("of_a_function_of_numpy", "uses 'tanh' of the module numpy"),
+        ("of_another_module", "uses 'random.random' of the module random"),
+        ("of_a_class", "uses 'WithSelf.alpha', where 'WithSelf' is a class"),
+        ("of_nothing", "uses 'no_such_name', which is not defined"),
+        ("of_later", "uses 'later', which is not defined"),
+        ("importing", "imports 'cmath'"),
+        ("counting", "changes 'count', a variable outside of it"),
+        ("changing", "changes the global variable 'LIMIT'"),
+    ],
+)
+def test_a_kernel_uses_numbers_only(name, what):
+    kernel = WithSelf().kernel(name)
+    where = deep_helper if name == "through_a_helper" else kernel
+    first = where.__code__.co_firstlineno
+    with pytest.raises(AssertionError) as caught:
+        run_check("kernel-uses-numbers-only", scheduler_of(kernel))
+    text = str(caught.value)
+    line = int(text.removeprefix("kernel-uses-numbers-only: line ").partition(" ")[0])
+    assert first < line <= first + 3
+    assert f"of test_conformance_kit.py: the kernel {what}; it may use numbers, tuples" in text
+    assert "\n" not in text
+
+
+def test_what_a_kernel_may_use():
+    run_check("kernel-uses-numbers-only", scheduler_of(WithSelf().kernel("good")))
+
+
+# -------------------------------------------------------------------- stability
+
+
+def gains(alpha, beta, gamma=0.0, phi=1.0, memory=()):
+    return scheduler_of(lambda e, d, dt, s, m: (alpha, beta, gamma, phi, m), memory)
+
+
+@pytest.mark.parametrize(
+    "values", [(1.9, 3.0), (0.5, -0.1), (2.1, 0.1), (-0.1, 0.2), (0.5, 0.2, 0.3), (0.5, 0.2, -0.1)]
+)
+def test_gains_outside_of_the_stability_region(values):
+    with pytest.raises(
+        AssertionError, match=r"^gains-are-stable: kernel at .*2 alpha \+ beta <= 4"
+    ):
+        run_check("gains-are-stable", gains(*values))
+    allowed = gains(*values)
+    type(allowed).may_be_unstable = True
+    run_check("gains-are-stable", allowed)
+
+
+@pytest.mark.parametrize(
+    # Deadbeat gains, a plot that is left out, the corners and edges, and acceleration that fades.
+    "values",
+    [(1.0, 1.0), (1.0, 1.5, 1.0), (0.0, 0.0), (0.0, 4.0), (2.0, 0.0), (1.0, 2.0),
+     (0.5, 0.2, 0.5, 0.2)],
+)  # fmt: skip
+def test_the_edge_of_the_region_is_inside(values):
+    run_check("gains-are-stable", gains(*values))
+
+
+def test_gains_that_become_unstable_later():
+    def wanders(innovation, change, dt, sigma, memory):
+        return 0.5, 0.2 + memory[0], 0.0, 1.0, (memory[0] + 0.2,)
+
+    with pytest.raises(AssertionError, match="make a filter unstable"):
+        run_check("gains-are-stable", scheduler_of(wanders, (0.0,)))
+
+
+def test_steps_of_a_start_need_no_gains():
+    def counts(innovation, change, dt, sigma, memory):
+        return (0.5 if memory[0] > 1.0 else 9.0), 0.2, 0.0, 1.0, (memory[0] + 1.0,)
+
+    run_check("gains-are-stable", scheduler_of(counts, (0.0,), sees_every_step=True))
+    with pytest.raises(AssertionError, match="alpha = 9"):
+        run_check("gains-are-stable", scheduler_of(counts, (0.0,)))
+
+
+# -------------------------------------------------------------------- names
+
+
+def test_checks_have_names():
+    names = [check.name for check in checks_for(KalmanCV(0.5))]
+    assert len(set(names)) == len(names)
+    assert {"batch-equals-single", "streaming-equals-run", "gains-are-stable"} <= set(names)
+    tracker = [check.name for check in checks_for(ft.AlphaBetaTracker(KalmanCV(0.5)))]
+    assert set(tracker) < set(names)
+    assert "compiled-equals-plain" in tracker
+    assert "compiled-equals-plain" not in [check.name for check in checks_for(Faulty())]
+
+
+@parametrize_with_checks({"good": ft.FixedGains(0.5, 0.2)})
+def test_each_check_is_a_test(check, request):
+    assert request.node.name == f"test_each_check_is_a_test[good-{check.name}]"
+    if check.name != "compiled-equals-plain":
+        check()
+
+
+def test_objects_of_a_class_are_numbered():
+    mark = parametrize_with_checks([ft.FixedGains(0.5, 0.2), Faulty(), ft.FixedGains(0.4, 0.2)])
+    ids = [parameters.id for parameters in mark.args[1]]
+    assert len(set(ids)) == len(ids)
+    for name in ("FixedGains-hashable", "Faulty-batch-equals-single", "FixedGains-2-hashable"):
+        assert name in ids
+
+
+def test_any_other_error_says_in_which_check():
+    def raises(result, t, z):
+        raise KeyError("z")
+
+    with pytest.raises(KeyError) as caught:
+        run_check("inputs-left-alone", Faulty(run=raises))
+    assert caught.value.__notes__ == ["in the check inputs-left-alone of Faulty"]
+
+
+# -------------------------------------------------------------------- trackers
 
 
 class Faulty:
@@ -232,5 +454,7 @@ def test_a_variance_must_be_that_of_the_covariance():
 
 
 def test_a_tracker_has_four_verbs():
-    with pytest.raises(AssertionError, match="must have run, start, step and predict"):
+    with pytest.raises(AssertionError, match="must have run, start, step and predict, got a FixedG"):
         check_tracker(ft.FixedGains(0.5, 0.2))
+    with pytest.raises(AssertionError, match="got the class Faulty; give an object"):
+        list(checks_for(Faulty))

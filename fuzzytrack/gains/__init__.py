@@ -32,7 +32,15 @@ from fuzzytrack.gains.performance import (
     transient_cost,
 )
 from fuzzytrack.gains.search import optimal_gains
-from fuzzytrack.gains.stability import Region, eigenfrequency, is_stable, jury, poles, region
+from fuzzytrack.gains.stability import (
+    Region,
+    eigenfrequency,
+    in_closed_region,
+    is_stable,
+    jury,
+    poles,
+    region,
+)
 from fuzzytrack.gains.systems import transfer_function
 from fuzzytrack.gains.wdomain import (
     alpha_beta_from_s,
@@ -65,6 +73,7 @@ __all__ = [
     "frequency_response",
     "from_abc",
     "growing_memory",
+    "in_closed_region",
     "is_stable",
     "jury",
     "kalata",

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import finite, inside
 
-__all__ = ["Region", "eigenfrequency", "is_stable", "jury", "poles", "region"]
+__all__ = ["Region", "eigenfrequency", "in_closed_region", "is_stable", "jury", "poles", "region"]
 
 
 class Region(StrEnum):
@@ -122,6 +122,62 @@ def is_stable(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0) -> Mask
         finite("alpha", alpha), finite("beta", beta), finite("gamma", gamma)
     )
     return inside(*gains)[()]
+
+
+def in_closed_region(
+    alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0, retention: ArrayLike = 1.0
+) -> Mask:
+    """Whether no pole of an α-β or α-β-γ filter lies outside of the unit circle.
+
+    Parameters
+    ----------
+    alpha, beta, gamma : array_like
+        Gains, finite; γ = 0 is the α-β filter.
+    retention : array_like, default 1
+        φ, the share of its acceleration that a filter keeps from plot to plot, finite; they all
+        broadcast.
+
+    Returns
+    -------
+    ndarray of bool
+        Of the broadcast shape (a bool for numbers). The stability region with its edge, and within
+        rounding (1e-12) of it: gains of 0, which leave a plot out, belong to it.
+
+    Raises
+    ------
+    ValueError
+        If a gain is not finite.
+
+    Notes
+    -----
+    Jury's conditions with equality for z² - (2 - α - β)z + 1 - α, and with γ for
+    z³ - (2 - α - β + φ(1 - γ/4))z² + ((1 - α)(1 + φ) + φ(1 - β + γ/4))z - φ(1 - α), the
+    characteristic polynomial of φ's filter. With φ = 1 they are 0 <= α <= 2, β >= 0, 2α + β <= 4
+    and 0 <= γ <= 4αβ/(2 - α).
+
+    Examples
+    --------
+    >>> [bool(answer) for answer in in_closed_region(0.5, [0, 0.7, 3.1], [0, 0.9, 0])]
+    [True, True, False]
+    """
+    a, b, c, phi = np.broadcast_arrays(
+        finite("alpha", alpha), finite("beta", beta), finite("gamma", gamma),
+        finite("retention", retention),
+    )  # fmt: skip
+    with np.errstate(over="ignore", invalid="ignore"):
+        first = 2 - a - b + phi * (1 - c / 4)
+        second = (1 - a) * (1 + phi) + phi * (1 - b + c / 4)
+        third = phi * (1 - a)
+        triangle = (np.minimum(a, 2 - a), b, 4 - 2 * a - b)
+        cubic = (
+            1 - first + second - third,
+            1 + first + second + third,
+            1 - np.abs(third),
+            1 - third * third - np.abs(second - first * third),
+        )
+    pair, triple = (np.all([x >= -1e-12 for x in part], axis=0) for part in (triangle, cubic))
+    good: Mask = np.where(c == 0, pair, triple)
+    return good[()]
 
 
 def poles(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0) -> NDArray[np.complex128]:

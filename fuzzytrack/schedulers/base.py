@@ -36,6 +36,9 @@ class GainScheduler(ABC):
         Whether the kernel also follows the steps of a track that need no gains; see `kernel`.
     uses_acceleration : bool
         Whether gamma can be other than 0. Without acceleration a tracker has less to do.
+    may_be_unstable : bool
+        Whether the gains for a plot may lie outside of the stability region, on purpose;
+        `fuzzytrack.testing.check_scheduler` then does not look at it.
     sigma_w : float or None
         Standard deviation (m) that stands for that of every plot, if the scheduler has one.
     """
@@ -45,6 +48,7 @@ class GainScheduler(ABC):
     needs_sigma: bool = False
     sees_every_step: bool = False
     uses_acceleration: bool = True
+    may_be_unstable: bool = False
     sigma_w: float | None = None
 
     @abstractmethod

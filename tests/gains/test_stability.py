@@ -11,6 +11,7 @@ from fuzzytrack.gains import (
     critically_damped,
     eigenfrequency,
     from_abc,
+    in_closed_region,
     is_stable,
     jury,
     poles,
@@ -290,3 +291,24 @@ def test_the_theory_of_gains_is_pure_numpy():
         "sys.exit(any(name.split('.')[0] in ('scipy', 'matplotlib') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@given(
+    st.floats(-0.5, 2.5), st.floats(-0.5, 4.5), st.floats(-0.5, 8.0) | st.just(0.0), st.floats(0, 1)
+)
+def test_the_closed_region_is_that_of_poles_within_the_circle(alpha, beta, gamma, retention):
+    step = np.array([[1, 1, 0.5], [0, 1, 1], [0, 0, 1]])
+    gains = np.array([[alpha], [beta], [gamma / 2]])
+    keep = np.diag([1.0, 1.0, retention if gamma else 0.0])
+    poles = np.linalg.eigvals(keep @ (np.eye(3) - gains @ [[1, 0, 0]]) @ step)
+    size = np.abs(poles).max()
+    if abs(size - 1) > 1e-4:
+        assert in_closed_region(alpha, beta, gamma, retention) == (size < 1)
+    if is_stable(alpha, beta, gamma):
+        assert in_closed_region(alpha, beta, gamma)
+
+
+def test_the_edge_belongs_to_the_closed_region():
+    assert in_closed_region([0, 0, 2, 1, 1.5], [0, 4, 0, 2, 1]).all()
+    assert in_closed_region([0.5, 1.0], [0.7, 1.5], 4 * np.array([0.35, 1.5]) / [1.5, 1.0]).all()
+    assert not in_closed_region([0, 2.1, 1, 1e300], [-0.1, 0.1, 2.1, 1e300], [0, 0, 0, 1.0]).any()

@@ -1,0 +1,196 @@
+"""What every gain scheduler promises, a function a promise."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import pickle
+from collections.abc import Callable, Iterator
+from types import FunctionType
+from typing import Any
+
+from fuzzytrack.gains.stability import in_closed_region
+from fuzzytrack.schedulers.base import GainScheduler, Memory
+from fuzzytrack.testing.kernel_words import foreign_word
+from fuzzytrack.testing.samples import AXES, SIGMA, arrays, expect, expect_same, sample_plots
+from fuzzytrack.testing.tracker_checks import TRACKER_CHECKS, compiled_equals_plain
+from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
+
+__all__ = ["SCHEDULER_CHECKS"]
+
+_ARGUMENTS = ("innovation", "change", "dt", "sigma", "memory")
+#: Innovations and changes of observation (m): none, tiny, ordinary and absurd.
+_MAGNITUDES = (0.0, 1e-12, 1.0, -3.0, 50.0, -1e9)
+_DT = 0.5
+
+
+def hashable(scheduler: GainScheduler, seed: int) -> None:
+    """It can be a key, by which compiled code is found again."""
+    name = type(scheduler).__name__
+    try:
+        hash(scheduler)
+    except TypeError:
+        raise AssertionError(f"{name} must be hashable: make it a frozen dataclass") from None
+
+
+def equals_pickled_copy(scheduler: GainScheduler, seed: int) -> None:
+    """It can be sent to another process, and is known there for the same."""
+    name = type(scheduler).__name__
+    try:
+        copy = pickle.loads(pickle.dumps(scheduler))
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise AssertionError(
+            f"{name} must pickle ({error}): define the class at the top of a module"
+        ) from None
+    expect(copy == scheduler, f"{name} must equal its pickled copy: make it a frozen dataclass")
+
+
+def kernel_takes_five_arguments(scheduler: GainScheduler, seed: int) -> None:
+    """The kernel is a plain function that can be called with the five arguments."""
+    kernel = _kernel(scheduler)
+    expect(
+        isinstance(kernel, FunctionType),
+        f"kernel(n_axes) must return a plain function, got a {type(kernel).__name__}: define it "
+        "inside, and take what it needs of self into variables before",
+    )
+    try:
+        inspect.signature(kernel).bind(*_ARGUMENTS)
+    except TypeError:
+        raise AssertionError(
+            f"the kernel must take the five arguments ({', '.join(_ARGUMENTS)}), takes "
+            f"{inspect.signature(kernel)}"
+        ) from None
+
+
+def kernel_uses_numbers_only(scheduler: GainScheduler, seed: int) -> None:
+    """The kernel, and what it calls, refers to nothing that cannot be compiled."""
+    found = foreign_word(_kernel(scheduler))
+    expect(found is None, str(found))
+
+
+def kernel_answers_in_form(scheduler: GainScheduler, seed: int) -> None:
+    """The kernel returns finite gains and a memory of the same length, and nothing else counts."""
+    kernel, memory = _kernel(scheduler), tuple(scheduler.initial_memory(_axes(scheduler)))
+    for where, arguments in _sample_arguments(scheduler):
+        answer = _answer(kernel, where, arguments, memory)
+        expect(len(answer) == 5, f"{where}: must return alpha, beta, gamma, phi, memory")
+        numbers = (*answer[:4], *answer[4])
+        expect(
+            all(isinstance(n, float) and math.isfinite(n) for n in numbers),
+            f"{where}: gains and memory must be finite floats, got {answer}",
+        )
+        expect(
+            answer[2] == 0.0 or scheduler.uses_acceleration,
+            f"{where}: gamma must be 0 unless uses_acceleration is set, got {answer[2]:g}",
+        )
+        expect(
+            len(answer[4]) == len(memory),
+            f"{where}: memory must keep its length {len(memory)}, got {len(answer[4])}",
+        )
+        expect(
+            _answer(kernel, where, arguments, memory) == answer,
+            f"{where}: must depend on nothing else",
+        )
+
+
+def gains_are_stable(scheduler: GainScheduler, seed: int) -> None:
+    """With the gains of no plot does the error of a filter grow by itself.
+
+    The edge of the stability region counts as inside: gains of 0 leave a plot out. Asked are the
+    kernel's memory of a track that has just started and, one plot after another, what comes of it.
+    """
+    if scheduler.may_be_unstable:
+        return
+    kernel = _kernel(scheduler)
+    started = _started(scheduler)
+    later = started
+    for where, arguments in _sample_arguments(scheduler):
+        for memory in (started, later):
+            alpha, beta, gamma, phi, after = _answer(kernel, where, arguments, memory)
+            expect(
+                bool(in_closed_region(alpha, beta, gamma, phi)),
+                f"{where}: alpha = {alpha:g}, beta = {beta:g}, gamma = {gamma:g}, phi = {phi:g} "
+                "make a filter unstable; stable are 0 <= alpha <= 2, beta >= 0, 2 alpha + beta <= "
+                "4 and, with phi = 1, 0 <= gamma <= 4 alpha beta/(2 - alpha). Or declare "
+                "may_be_unstable = True",
+            )
+        later = after
+
+
+def pickled_copy_gives_the_same_gains(scheduler: GainScheduler, seed: int) -> None:
+    """Another process gives the same track."""
+    both = scheduler, pickle.loads(pickle.dumps(scheduler))
+    times, plots = sample_plots(seed)
+    for start in STARTS:
+        one, other = (AlphaBetaTracker(each, start).run(times, plots, SIGMA) for each in both)
+        expect_same(arrays(one), arrays(other), "a pickled scheduler must give the same gains")
+
+
+def compiled(scheduler: GainScheduler, seed: int) -> None:
+    """See `compiled_equals_plain`."""
+    compiled_equals_plain(AlphaBetaTracker(scheduler), seed)
+
+
+def _with_either_start(promise: Callable[[Any, int], None]) -> Callable[[Any, int], None]:
+    """Promise of a tracker, of the one that a scheduler makes with either start."""
+
+    def kept(scheduler: GainScheduler, seed: int) -> None:
+        for start in STARTS:
+            promise(AlphaBetaTracker(scheduler, start), seed)
+
+    return kept
+
+
+def _axes(scheduler: GainScheduler) -> int:
+    return AXES if scheduler.coupled else 1
+
+
+def _kernel(scheduler: GainScheduler) -> Callable[..., Any]:
+    return scheduler.kernel(_axes(scheduler))
+
+
+def _answer(kernel: Callable[..., Any], where: str, arguments: Any, memory: Memory) -> Any:
+    try:
+        return kernel(*arguments, memory)
+    except ArithmeticError as error:
+        raise AssertionError(
+            f"{where}: raises {type(error).__name__} ({error}); it must guard its own divisions"
+        ) from error
+
+
+def _arguments(scheduler: GainScheduler, innovation: float, change: float) -> tuple[Any, ...]:
+    """What a kernel is called with, but for its memory; the same on all axes."""
+    if not scheduler.coupled:
+        return innovation, change, _DT, SIGMA
+    return (innovation,) * AXES, (change,) * AXES, _DT, (SIGMA,) * AXES
+
+
+def _sample_arguments(scheduler: GainScheduler) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """What a kernel may be called with, and words for it."""
+    for innovation in _MAGNITUDES:
+        for change in _MAGNITUDES:
+            where = f"kernel at innovation {innovation:g}, change {change:g}"
+            yield where, _arguments(scheduler, innovation, change)
+
+
+def _started(scheduler: GainScheduler) -> Memory:
+    """Memory of a track that has been started from two plots."""
+    memory = tuple(scheduler.initial_memory(_axes(scheduler)))
+    if scheduler.sees_every_step:
+        for _ in range(2):
+            memory = _kernel(scheduler)(*_arguments(scheduler, 0.0, 0.0), memory)[4]
+    return memory
+
+
+#: Checks of every scheduler, by name.
+SCHEDULER_CHECKS: dict[str, Callable[[Any, int], None]] = {
+    "hashable": hashable,
+    "equals-pickled-copy": equals_pickled_copy,
+    "kernel-takes-five-arguments": kernel_takes_five_arguments,
+    "kernel-uses-numbers-only": kernel_uses_numbers_only,
+    "kernel-answers-in-form": kernel_answers_in_form,
+    "gains-are-stable": gains_are_stable,
+    **{name: _with_either_start(promise) for name, promise in TRACKER_CHECKS.items()},
+    "pickled-copy-gives-same-gains": pickled_copy_gives_the_same_gains,
+    "compiled-equals-plain": compiled,
+}

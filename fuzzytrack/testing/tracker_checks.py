@@ -1,0 +1,166 @@
+"""What every tracker promises, a function a promise."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.testing.prediction_checks import (
+    predict_equals_missed_plot,
+    variance_equals_track_covariance,
+)
+from fuzzytrack.testing.samples import (
+    AXES,
+    SIGMA,
+    STEPS,
+    TRACKS,
+    arrays,
+    expect,
+    expect_refused,
+    expect_same,
+    sample_plots,
+)
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, runner
+
+__all__ = ["LANE_CHECKS", "TRACKER_CHECKS", "compiled_equals_plain"]
+
+
+def same_plots_give_the_same_track(tracker: Tracker, seed: int) -> None:
+    """Two runs give the same numbers."""
+    times, plots = sample_plots(seed)
+    first = tracker.run(times, plots, SIGMA)
+    again = tracker.run(times, plots, SIGMA)
+    expect_same(arrays(first), arrays(again), "the same plots must give the same track")
+
+
+def inputs_are_left_alone(tracker: Tracker, seed: int) -> None:
+    """A run does not write to its arguments."""
+    times, plots = sample_plots(seed)
+    times_before, plots_before = times.copy(), plots.copy()
+    tracker.run(times, plots, SIGMA)
+    untouched = np.array_equal(times, times_before) and np.array_equal(
+        plots, plots_before, equal_nan=True
+    )
+    expect(untouched, "run must leave its inputs as they are")
+
+
+def results_have_the_shape_of_plots(tracker: Tracker, seed: int) -> None:
+    """One track, batches of any number of axes, one plot, and none."""
+    times, plots = sample_plots(seed)
+    for z in (plots[:, 0], plots, plots.reshape(STEPS, 1, TRACKS, AXES), plots[:, :, :1]):
+        for name, array in arrays(tracker.run(times, z, SIGMA)).items():
+            expect(
+                array.shape == z.shape,
+                f"{name} must have the shape {z.shape} of the plots, has {array.shape}",
+            )
+    for z in (plots[:1, 0], plots[:0, 0], plots[:, :0]):
+        result = tracker.run(times[: len(z)], z, SIGMA)
+        expect(result.predicted.shape == z.shape, f"plots of shape {z.shape} must be tracked")
+
+
+def missed_plots_are_coasted(tracker: Tracker, seed: int) -> None:
+    """Where a plot is missed the position is the prediction, and there are no gains."""
+    times, plots = sample_plots(seed)
+    result = tracker.run(times, plots[:, 0], SIGMA)
+    known = np.isnan(plots[:, 0]).any(axis=-1) & ~np.isnan(result.predicted).any(axis=-1)
+    expect(bool(known.any()), "predictions must go on while plots are missed")
+    expect(
+        np.array_equal(result.filtered[known], result.predicted[known]),
+        "where a plot is missed, the filtered position must be the prediction",
+    )
+    expect(
+        bool(
+            np.isnan(result.innovation[known]).all() and np.isnan(result.gains.alpha[known]).all()
+        ),
+        "where a plot is missed, innovation and gains must be NaN",
+    )
+    expect(bool(np.isfinite(result.filtered[-4:]).all()), "a track must recover from missed plots")
+
+
+def batch_equals_single(tracker: Tracker, seed: int) -> None:
+    """A batch gives the numbers of its tracks one by one; times are common or each track's own."""
+    times, plots = sample_plots(seed)
+    batch = arrays(tracker.run(times, plots, SIGMA))
+    own_times = np.repeat(times[:, None], TRACKS, axis=1)
+    expect_same(
+        batch, arrays(tracker.run(own_times, plots, SIGMA)), "times may be each track's own"
+    )
+    for track in range(TRACKS):
+        alone = arrays(tracker.run(times, plots[:, track], SIGMA))
+        part = {name: array[:, track] for name, array in batch.items()}
+        expect_same(part, alone, f"a batch must equal its tracks one by one (track {track})")
+
+
+def streaming_equals_run(tracker: Tracker, seed: int) -> None:
+    """Plot by plot, and pickled half way, a track has the numbers of a run."""
+    times, plots = sample_plots(seed)
+    for z in (plots[:, 0], plots):
+        whole = arrays(tracker.run(times, z, SIGMA))
+        state = tracker.start(z[0], times[0], SIGMA)
+        for k in range(1, STEPS):
+            if k == STEPS // 2:
+                state = pickle.loads(pickle.dumps(state))
+            state = tracker.step(state, z[k], times[k], SIGMA)
+            now = {name: array[k] for name, array in whole.items()}
+            expect_same(now, arrays(state), f"streaming must equal run (step {k})")
+
+
+def bad_input_is_refused(tracker: Tracker, seed: int) -> None:
+    """What cannot be tracked raises ValueError."""
+    times, batch = sample_plots(seed)
+    plots = batch[:, 0]
+    infinite, repeated = plots.copy(), times.copy()
+    infinite[3, 0] = np.inf
+    repeated[5] = repeated[4]
+    bad: dict[str, Callable[[], Any]] = {
+        "an infinite plot": lambda: tracker.run(times, infinite, SIGMA),
+        "a repeated time": lambda: tracker.run(repeated, plots, SIGMA),
+        "falling times": lambda: tracker.run(times[::-1], plots, SIGMA),
+        "times of another length": lambda: tracker.run(times[:-1], plots, SIGMA),
+    }
+    for what, call in bad.items():
+        expect_refused(call, what)
+
+
+def compiled_equals_plain(tracker: LaneTracker, seed: int) -> None:
+    """Compiled code gives the numbers of plain Python, to the last bit."""
+    times, plots = sample_plots(seed)
+    n_axes = AXES if tracker.coupled else 1
+    core = runner(tracker, n_axes)
+    lanes = plots.reshape(STEPS, -1, n_axes)
+    dts = np.diff(times, prepend=times[0])[:, None]
+    sigmas = np.full((1, 1, 1), SIGMA)
+    fresh = core.fresh(lanes.shape[1])
+    plain_state, plain = core(fresh, lanes, dts, sigmas, native=False)
+    own_dts = np.repeat(dts, lanes.shape[1], axis=1)
+    # Together and each by itself, a track may take other ways through the code.
+    for steps in (dts, own_dts):
+        native_state, native = core(fresh, lanes, steps, sigmas, native=True)
+        expect_same(plain, native, "compiled code must equal plain Python to the last bit")
+        expect(
+            np.array_equal(plain_state, native_state, equal_nan=True),
+            "compiled code must leave the same state as plain Python",
+        )
+
+
+#: Checks of every tracker, by name.
+TRACKER_CHECKS: dict[str, Callable[[Any, int], None]] = {
+    "results-have-shape-of-plots": results_have_the_shape_of_plots,
+    "same-plots-give-same-track": same_plots_give_the_same_track,
+    "inputs-left-alone": inputs_are_left_alone,
+    "missed-plots-coasted": missed_plots_are_coasted,
+    "batch-equals-single": batch_equals_single,
+    "streaming-equals-run": streaming_equals_run,
+    "predict-equals-missed-plot": predict_equals_missed_plot,
+    "variance-equals-track-covariance": variance_equals_track_covariance,
+    "bad-input-refused": bad_input_is_refused,
+}
+
+#: Checks of a `LaneTracker` besides, by name.
+LANE_CHECKS: dict[str, Callable[[Any, int], None]] = {
+    "compiled-equals-plain": compiled_equals_plain
+}
