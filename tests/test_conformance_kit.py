@@ -454,7 +454,9 @@ def test_a_variance_must_be_that_of_the_covariance():
 
 
 def test_a_tracker_has_four_verbs():
-    with pytest.raises(AssertionError, match="must have run, start, step and predict, got a FixedG"):
+    with pytest.raises(
+        AssertionError, match="must have run, start, step and predict, got a FixedG"
+    ):
         check_tracker(ft.FixedGains(0.5, 0.2))
     with pytest.raises(AssertionError, match="got the class Faulty; give an object"):
         list(checks_for(Faulty))
