@@ -2,7 +2,13 @@
 
 PYTHON ?= python3
 VENV ?= .venv
-PYTEST_ARGS ?= -n auto --dist loadgroup
+# A file stays in one process: what takes long is set up once for all its tests.
+PYTEST_ARGS ?= -n auto --dist loadfile
+LOWEST ?= .venv-lowest
+LOWEST_TESTS ?= tests/test_public_names.py tests/cli/test_app.py tests/cli/test_data_commands.py \
+	tests/cli/test_rulebase_commands.py tests/io tests/plotting/test_plotting.py \
+	tests/plotting/test_surfaces.py tests/fuzzy/test_loading.py tests/fuzzy/test_system.py \
+	tests/fuzzy/test_membership.py tests/kernels tests/trackers/test_speed_paths.py
 FUZZ_COUNT ?= 1000000
 BENCH_ARGS ?=
 
@@ -14,7 +20,7 @@ export MPLBACKEND ?= Agg
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test referee lint format docs fuzz bench clean distclean
+.PHONY: help demo test lowest constraints referee lint format docs fuzz bench clean distclean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -46,6 +52,21 @@ demo: $(VENV)/.installed ## Track a turning target and write pictures and tables
 test: $(VENV)/.installed-test ## Run every test, with branch coverage (PYTEST_ARGS= for one process)
 	$(BIN)/python -m pytest $(PYTEST_ARGS) --cov --cov-branch --cov-report=term-missing:skip-covered
 
+# Without a file of constraints pip may mix the lowest versions with any others.
+$(LOWEST)/.installed: pyproject.toml .ci/lowest.py
+	$(PYTHON) -m venv $(LOWEST)
+	$(PYTHON) .ci/lowest.py > $(LOWEST)/constraints.txt
+	$(LOWEST)/bin/python -m pip -qq --disable-pip-version-check --no-input install \
+		--constraint $(LOWEST)/constraints.txt --editable '.[parquet]' pytest hypothesis jsonschema
+	@touch $@
+
+# The oldest packages use what the newest ones warn of; that is not for us to mend.
+lowest: $(LOWEST)/.installed ## Run a short suite with the lowest versions that pyproject.toml allows
+	$(LOWEST)/bin/python -m pytest -q -p no:cacheprovider -W default $(LOWEST_TESTS)
+
+constraints: $(VENV)/.installed-test $(VENV)/.installed-docs ## Record the versions that are installed, after a green run
+	$(BIN)/python -m pip --disable-pip-version-check freeze --exclude-editable > .ci/constraints.txt
+
 referee: $(VENV)/.installed-test ## Compare the engine with pyfuzzylite (GPL, installed for this only)
 	$(PIP) install --no-deps pyfuzzylite
 	$(BIN)/python -m pytest $(PYTEST_ARGS) tests/referee
@@ -63,8 +84,9 @@ docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; 
 	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
 
-fuzz: $(VENV)/.installed-test ## Feed the rule-base loader FUZZ_COUNT broken files
+fuzz: $(VENV)/.installed-test ## Try new random examples, and FUZZ_COUNT broken rule bases
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
+	HYPOTHESIS_PROFILE=free $(BIN)/python -m pytest $(PYTEST_ARGS) -m hypothesis
 
 bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)
 	$(BIN)/python -m benchmarks $(BENCH_ARGS)
@@ -77,4 +99,4 @@ clean: ## Remove what was built, but keep .venv
 	find . -path './$(VENV)' -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +
 
 distclean: clean ## Remove .venv as well
-	rm -rf $(VENV)
+	rm -rf $(VENV) $(LOWEST)

@@ -1,9 +1,80 @@
 """What all tests share."""
 
+import os
+import threading
+
+import pytest
 from hypothesis import HealthCheck, settings
 
-# A slow machine is no defect: no test depends on time.
-settings.register_profile(
-    "untimed", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow]
-)
-settings.load_profile("untimed")
+# No test depends on time: a slow machine is no defect. `make test` tries the same examples in every
+# run; `make fuzz` draws new ones, and more of them.
+_UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("repeatable", _UNTIMED, derandomize=True)
+settings.register_profile("free", _UNTIMED, derandomize=False, max_examples=1000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+
+class _Pause:
+    """Stops the measurement of coverage while it is entered; may be nested."""
+
+    def __init__(self):
+        self.depth = 0
+        self.stopped = None
+
+    def start(self):
+        self.depth += 1
+        if self.depth == 1:
+            self.stopped = _running_coverage()
+            if self.stopped is not None:
+                self.stopped.stop()
+
+    def end(self):
+        self.depth -= 1
+        if self.depth == 0 and self.stopped is not None:
+            self.stopped.start()
+            self.stopped = None
+
+
+def _running_coverage():
+    try:
+        from coverage import Coverage
+    except ImportError:
+        return None
+    return Coverage.current()
+
+
+_pause = _Pause()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item, nextitem):
+    """Leave tests that are marked `untraced` out of coverage, their set-up included.
+
+    Traced, plain Python kernels take five times as long. What such a test covers, another test
+    covers with less work.
+    """
+    if item.get_closest_marker("untraced") is None:
+        return (yield)
+    _pause.start()
+    try:
+        return (yield)
+    finally:
+        _pause.end()
+
+
+def pytest_sessionstart(session):
+    """Pause coverage also while Numba compiles, which takes twice as long when it is traced."""
+    if _running_coverage() is None:
+        return
+    from numba.core import event
+
+    class Compilation(event.Listener):
+        def on_start(self, _):
+            if threading.current_thread() is threading.main_thread():
+                _pause.start()
+
+        def on_end(self, _):
+            if threading.current_thread() is threading.main_thread():
+                _pause.end()
+
+    event.register("numba:compiler_lock", Compilation())

@@ -14,8 +14,6 @@ ROOT = Path(__file__).resolve().parents[1]
 pytestmark = [
     # What peers are warned of is not ours to mend.
     pytest.mark.filterwarnings("ignore::DeprecationWarning"),
-    # What takes long is done once, by one process.
-    pytest.mark.xdist_group("benchmarks"),
 ]
 
 

@@ -13,9 +13,6 @@ from fuzzytrack.io.shuffle import partition_of
 ROOT = Path(__file__).resolve().parents[1]
 PARTITIONS = 5
 
-# What takes long is done once, by one process.
-pytestmark = pytest.mark.xdist_group("large benchmark")
-
 
 @pytest.fixture(scope="module", autouse=True)
 def the_suite_can_be_imported():

@@ -11,9 +11,6 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# What takes long is done once, by one process.
-pytestmark = pytest.mark.xdist_group("plugin package")
-
 
 @pytest.fixture(scope="module")
 def environment(tmp_path_factory):

@@ -22,10 +22,9 @@ from fuzzytrack.papers.alwagih_abdulla_tables import (
     table_rows,
 )
 
-RUNS = 120
+RUNS = 30
 
-# What takes long is done once, by one process.
-pytestmark = pytest.mark.xdist_group("alwagih_abdulla")
+pytestmark = pytest.mark.untraced
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,9 @@ import pytest
 
 from fuzzytrack.papers import reproduce
 
-RUNS = 400
+RUNS = 100
 
-# What takes long is done once, by one process.
-pytestmark = pytest.mark.xdist_group("kim_lee")
+pytestmark = pytest.mark.untraced
 
 
 @pytest.fixture(scope="module")

@@ -14,10 +14,9 @@ from fuzzytrack.simulation.published import MANEUVERS, llinas_maneuver
 from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed.montecarlo import monte_carlo
 
-RUNS = 80
+RUNS = 20
 
-# What takes long is done once, by one process.
-pytestmark = pytest.mark.xdist_group("llinas")
+pytestmark = pytest.mark.untraced
 T1, T2, T3, T4, T5 = field.trackers()
 
 

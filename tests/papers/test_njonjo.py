@@ -8,10 +8,9 @@ import pytest
 
 from fuzzytrack.papers import njonjo, reproduce
 
-RUNS = 40
+RUNS = 10
 
-# What takes long is done once, by one process.
-pytestmark = pytest.mark.xdist_group("njonjo")
+pytestmark = pytest.mark.untraced
 
 
 @pytest.fixture(scope="module")

@@ -67,3 +67,18 @@ def test_every_paper_has_its_module(name):
     module = importlib.import_module(f"fuzzytrack.papers.{PAPERS[name]}")
     assert module.RUNS >= 1
     assert callable(module.reproduce)
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_every_paper_runs_and_draws(paper):
+    """With two runs, and traced; the numbers are tested for each paper by itself."""
+    from matplotlib import pyplot as plt
+
+    shares = []
+    found = reproduce(paper, 2, progress=shares.append)
+    assert found.rows
+    assert all(isinstance(r.ours, float) for r in found.rows)
+    assert shares == sorted(shares)
+    assert shares[-1] == pytest.approx(1.0)
+    for draw in found.pictures.values():
+        plt.close(draw())
