@@ -5,7 +5,14 @@ import os
 # The gallery draws, and must not wait for a display.
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+# Examples that warn are wrong. Other warnings may come from the packages that build the pages.
+import warnings
+
 import fuzzytrack
+from fuzzytrack.errors import NoRuleFiresWarning
+
+for category in (NoRuleFiresWarning, RuntimeWarning):
+    warnings.simplefilter("error", category)
 
 project = "fuzzytrack"
 author = "The fuzzytrack developers"
