@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,7 +11,15 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import nonnegative, number, positive, within
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.imm_step import MODEL, PROBABILITIES, imm_rows, step_function
+from fuzzytrack.trackers.imm_step import (
+    MODEL,
+    PROBABILITIES,
+    imm_rows,
+    mixed,
+    moved,
+    step_function,
+    switched,
+)
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.state import TrackState, check_rows
 
@@ -171,10 +179,7 @@ class InteractingModels(LaneTracker):
         return probability
 
     def position_variance(self, state: TrackState) -> Array:
-        """Variance of the position: that of the models, and the spread between them.
-
-        For a gate about a plot to come, do a `step` with a missed one (NaN) to its time: the state
-        is then the prediction.
+        """Variance of the position after the last step; that of a prediction is in `predict`.
 
         Parameters
         ----------
@@ -184,7 +189,8 @@ class InteractingModels(LaneTracker):
         Returns
         -------
         ndarray
-            Variance (m²), shaped as a plot; NaN before the first plot.
+            Variance (m²), shaped as a plot: that of the models, and the spread between them. NaN
+            before the first plot.
 
         Raises
         ------
@@ -193,13 +199,25 @@ class InteractingModels(LaneTracker):
         """
         self._check(state)
         rows = state.rows
-        memory = state.lanes[rows.memory : rows.state]
-        quiet, maneuver = memory[:PROBABILITIES]
-        models = memory[PROBABILITIES:].reshape(rows.n_axes, 2, MODEL, memory.shape[1])
-        apart = models[:, 1, 0] - models[:, 0, 0]
-        variance = quiet * models[:, 0, 3] + maneuver * (models[:, 1, 3] + quiet * apart**2)
-        variance = np.where(np.isnan(state.lanes[: rows.n_axes]), np.nan, variance)
-        return variance.T.reshape(state.shape)
+        variance: Array = _variance(*_unpacked(state.lanes[rows.memory : rows.state]))
+        seen = ~np.isnan(state.lanes[: rows.n_axes])
+        return np.where(seen, variance, np.nan).T.reshape(state.shape)
+
+    def prediction_variance(self, memory: Any, dt: Any) -> Any:
+        """Variance of a predicted position; see `LaneTracker.prediction_variance`.
+
+        The models switch, mix and move as in a step with a missed plot.
+        """
+        was_quiet, was_maneuver, one, two = _unpacked(memory)
+        quiet, maneuver, to_quiet, to_maneuver = switched(
+            was_quiet, was_maneuver, self.quiet_stay, self.maneuver_stay
+        )
+        quiet_share: Any = to_quiet / np.where(quiet > 0.0, quiet, 1.0)
+        maneuver_share: Any = to_maneuver / np.where(maneuver > 0.0, maneuver, 1.0)
+        mixed_one, mixed_two = mixed(one, two, quiet_share), mixed(two, one, maneuver_share)
+        one = moved(mixed_one, dt, self.quiet_sigma**2, False)
+        two = moved(mixed_two, dt, self.maneuver_sigma**2, self.maneuver == "ca")
+        return _variance(quiet, maneuver, one, two)
 
     def _check(self, state: TrackState) -> None:
         n_axes = state.rows.n_axes if self.joint else 1
@@ -209,3 +227,20 @@ class InteractingModels(LaneTracker):
 def _probability(name: str, value: float) -> Array:
     array = np.asarray(value, dtype=np.float64)
     return within(name, array, np.asarray((array >= 0) & (array <= 1)), "a probability, 0 to 1")
+
+
+def _unpacked(memory: Array) -> tuple[Any, Any, Any, Any]:
+    """Probabilities of both models, shape (lanes,), and the models of all axes, (n_axes, lanes)."""
+    n_axes = (len(memory) - PROBABILITIES) // (2 * MODEL)
+    models = memory[PROBABILITIES:].reshape(n_axes, 2, MODEL, memory.shape[1])
+    quiet, maneuver = memory[:PROBABILITIES]
+    one, two = (tuple(models[:, k].swapaxes(0, 1)) for k in (0, 1))
+    return quiet, maneuver, one, two
+
+
+def _variance(quiet: Any, maneuver: Any, one: Any, two: Any) -> Any:
+    """Variance of the position: that of the models, and the spread between them."""
+    # No variance is negative by rounding.
+    variances, apart = (np.maximum(model[3], 0.0) for model in (one, two)), two[0] - one[0]
+    quiet_variance, maneuver_variance = variances
+    return quiet * quiet_variance + maneuver * (maneuver_variance + quiet * apart**2)

@@ -16,7 +16,7 @@ from fuzzytrack.lanes.layout import Rows
 if TYPE_CHECKING:
     from fuzzytrack.trackers.imm import InteractingModels
 
-__all__ = ["MODEL", "PROBABILITIES", "imm_rows", "step_function"]
+__all__ = ["MODEL", "PROBABILITIES", "imm_rows", "mixed", "moved", "step_function", "switched"]
 
 #: Model of an axis: x, v, a, and P by rows, without what is below its diagonal.
 Model = tuple[float, float, float, float, float, float, float, float, float]
@@ -51,7 +51,21 @@ def _exp(x: float) -> float:
     return 1.0 / (1.0 + y) if x < 0.0 else 1.0 + y
 
 
-def _mixed(own: Model, other: Model, share: float) -> Model:
+def switched(
+    quiet: float, maneuver: float, quiet_stay: float, maneuver_stay: float
+) -> tuple[float, float, float, float]:
+    """Probabilities of both models a step later, and the parts that come from the other one."""
+    to_maneuver = (1.0 - quiet_stay) * quiet
+    to_quiet = (1.0 - maneuver_stay) * maneuver
+    return (
+        quiet_stay * quiet + to_quiet,
+        maneuver_stay * maneuver + to_maneuver,
+        to_quiet,
+        to_maneuver,
+    )
+
+
+def mixed(own: Model, other: Model, share: float) -> Model:
     """Mean and covariance of a mixture of two models, with the share of the other one."""
     x, v, a, p11, p12, p13, p22, p23, p33 = own
     x2, v2, a2, q11, q12, q13, q22, q23, q33 = other
@@ -70,7 +84,7 @@ def _mixed(own: Model, other: Model, share: float) -> Model:
     )
 
 
-def _predicted(model: Model, dt: float, q: float, accelerates: bool) -> Model:
+def moved(model: Model, dt: float, q: float, accelerates: bool) -> Model:
     """Model a time step later, with process noise GGᵀq."""
     x, v, a, p11, p12, p13, p22, p23, p33 = model
     a = a if accelerates else 0.0
@@ -87,13 +101,19 @@ def _predicted(model: Model, dt: float, q: float, accelerates: bool) -> Model:
         x + v * dt + a * g,
         v + a * dt,
         a,
-        p11 if p11 > 0.0 else 0.0,
+        p11,
         p12 + q * g * dt,
         p13,
         p22 + q * dt * dt,
         p23,
         p33,
     )
+
+
+def _predicted(model: Model, dt: float, q: float, accelerates: bool) -> Model:
+    """As `moved`; no variance of position is negative by rounding."""
+    x, v, a, p11, p12, p13, p22, p23, p33 = moved(model, dt, q, accelerates)
+    return x, v, a, p11 if p11 > 0.0 else 0.0, p12, p13, p22, p23, p33
 
 
 def _corrected(
@@ -227,10 +247,9 @@ def _lane_passages(
             running = b[plots_row * stride + i] >= 2.0
             was_quiet = b[quiet_row * stride + i]
             was_maneuver = b[maneuver_row * stride + i]
-            to_maneuver = (1.0 - quiet_stay) * was_quiet
-            to_quiet = (1.0 - maneuver_stay) * was_maneuver
-            quiet = quiet_stay * was_quiet + to_quiet
-            maneuver = maneuver_stay * was_maneuver + to_maneuver
+            quiet, maneuver, to_quiet, to_maneuver = switched(
+                was_quiet, was_maneuver, quiet_stay, maneuver_stay
+            )
             quiet_share = to_quiet / (quiet if quiet > 0.0 else 1.0)
             maneuver_share = to_maneuver / (maneuver if maneuver > 0.0 else 1.0)
             b[quiet_share_row * stride + i] = quiet_share if running else 0.0
@@ -307,8 +326,8 @@ def _axis_passages(
         for i in range(min(count, stride)):
             dt = b[dt_row * stride + i]
             one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
-            mixed_one = _mixed(one, two, b[quiet_share_row * stride + i])
-            mixed_two = _mixed(two, one, b[maneuver_share_row * stride + i])
+            mixed_one = mixed(one, two, b[quiet_share_row * stride + i])
+            mixed_two = mixed(two, one, b[maneuver_share_row * stride + i])
             one = _predicted(mixed_one, dt, quiet_q, False)
             two = _predicted(mixed_two, dt, maneuver_q, accelerates)
             write(b, quiet_at + i, one)

@@ -281,6 +281,60 @@ def test_before_the_start():
     assert (tracker.position_variance(gate) > tracker.position_variance(after)).all()
 
 
+def predicted_by_chance(tracker, state, dt, count, seed):
+    """Positions after `dt` of targets drawn from a state of one axis, model by model."""
+    random = np.random.default_rng(seed)
+    memory = state.lanes[state.rows.memory : state.rows.state, 0]
+    stays = (tracker.quiet_stay, tracker.maneuver_stay)
+    noises = (tracker.quiet_sigma, tracker.maneuver_sigma)
+    positions = []
+    for before in (0, 1):
+        x, v, a, p11, p12, p13, p22, p23, p33 = memory[2 + 9 * before :][:9]
+        covariance = [[p11, p12, p13], [p12, p22, p23], [p13, p23, p33]]
+        many = round(memory[before] * count)
+        drawn = random.multivariate_normal([x, v, a], covariance, many)
+        now = np.where(random.random(many) < stays[before], before, 1 - before)
+        pushed = random.normal(size=many) * np.take(noises, now)
+        # The quiet model knows no acceleration but what its noise pushes with.
+        pushed += np.where(now == 1, drawn[:, 2], 0.0)
+        positions.append(drawn[:, 0] + dt * drawn[:, 1] + dt**2 / 2 * pushed)
+    return np.concatenate(positions)
+
+
+@pytest.mark.parametrize("dt", [0.5, 4.0])
+def test_the_variance_of_a_prediction_by_chance(dt):
+    tracker = InteractingModels(0.2, 1.5, 0.8, 0.6, acceleration_sigma=3.0)
+    z = [0.0, 9.0, 21.0, 28.0, 44.0, 60.0, 71.0]
+    state = tracker.run([0.0, 1.0, 2.5, 3.0, 4.0, 5.5, 6.0], z, 2.0).state
+    assert 0.05 < tracker.maneuver_probability(state) < 0.95
+    found = tracker.predict(state, 6.0 + dt, sigma=1.5)
+    drawn = predicted_by_chance(tracker, state, dt, 400_000, 1)
+    assert found.position == pytest.approx(drawn.mean(), abs=4 * drawn.std() / 600)
+    assert found.position_variance == pytest.approx(drawn.var(), rel=0.02)
+    assert found.innovation_variance == found.position_variance + 1.5**2
+
+
+@pytest.mark.parametrize("maneuver", ["ca", "cv"])
+@pytest.mark.parametrize("joint", [True, False])
+def test_the_variance_of_a_prediction_is_that_after_missed_plots(maneuver, joint):
+    tracker = InteractingModels(0.1, 2.0, maneuver=maneuver, joint=joint)
+    random = np.random.default_rng(8)
+    z, sigma = random.normal(size=(12, 4, 2)) * 5, random.uniform(1.0, 4.0, (12, 4, 2))
+    z[[4, 7, 7], [1, 2, 3], [0, 1, 0]] = np.nan
+    z[:11, 3, 1] = np.nan
+    t = np.cumsum(random.uniform(0.5, 2.0, (12, 4)), axis=0)
+    state = tracker.run(t, z, sigma).state
+    for later in (0.25, [0.25, 1.0, 5.0, 60.0]):
+        found = tracker.predict(state, t[-1] + later, 2.0)
+        coasted = tracker.step(state, np.full((4, 2), np.nan), t[-1] + later, 1.0)
+        known = np.isfinite(found.position_variance)
+        # One axis of the last track has one plot, or for a joint tracker the whole track has.
+        assert known.tolist() == [[True] * 2] * 3 + [[not joint, False]]
+        expected = tracker.position_variance(coasted)
+        np.testing.assert_allclose(found.position_variance[known], expected[known], rtol=1e-12)
+        assert (found.position_variance[known] > tracker.position_variance(state)[known]).all()
+
+
 def test_shapes_of_probability_and_variance():
     alone = InteractingModels(0.1, 1.0, joint=False, sigma_w=1.0)
     for shape in ((), (1,), (3,), (4, 3), (2, 4, 3), (0, 3)):
