@@ -28,6 +28,7 @@ __all__ = [
     "Node",
     "Scalar",
     "Sequence",
+    "is_number",
     "quoted",
     "suggestion",
 ]
@@ -141,6 +142,11 @@ def suggestion(word: str, allowed: Collection[str]) -> str:
     return f"{guess} allowed: {', '.join(words[:_SHOWN_WORDS])}{more}"
 
 
+def is_number(word: str) -> bool:
+    """Whether a word is a number; `float` also takes underscores, "infinity" and other digits."""
+    return _NUMBER.fullmatch(word) is not None
+
+
 class Document:
     """A parsed text, and the questions the loader asks of its nodes.
 
@@ -249,8 +255,7 @@ class Document:
 
     def as_number(self, node: Node, word: str, role: str, offset: int = 0) -> float:
         """Read a finite number written in part of a scalar."""
-        # The pattern first: float() also takes underscores, "infinity" and foreign digits.
-        value = float(word) if _NUMBER.fullmatch(word) else float("inf")
+        value = float(word) if is_number(word) else float("inf")
         if value in (float("inf"), float("-inf")):
             raise self.error(node, f"{role} must be a finite number, not {quoted(word)}", offset)
         return value

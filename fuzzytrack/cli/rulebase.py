@@ -170,12 +170,14 @@ def schema(
 ) -> None:
     """Print the JSON Schema of rule-base files, for editors."""
     from fuzzytrack.fuzzy.schema import dumps_schema
+    from fuzzytrack.schedulers.settings import scheduler_schema
 
+    text = dumps_schema(scheduler_schema())
     if output is None:
-        say(dumps_schema().rstrip())
+        say(text.rstrip())
         return
     from fuzzytrack.io.files import whole_file
 
     with whole_file(output) as draft:
-        draft.write_text(dumps_schema(), encoding="utf-8")
+        draft.write_text(text, encoding="utf-8")
     say(f"wrote {output}")

@@ -21,13 +21,12 @@ from fuzzytrack.fuzzy.rulebase import (
     TableLayout,
 )
 from fuzzytrack.fuzzy.variable import GRIDS, Universe, Variable
-from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted, suggestion
+from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode
 
 __all__ = [
     "FORMAT_VERSION",
     "MAX_NAME",
-    "SCHEDULER_KEYS",
     "SET_NAME",
     "VARIABLE_NAME",
     "Reader",
@@ -35,7 +34,6 @@ __all__ = [
 
 FORMAT_VERSION = "1"
 MAX_NAME = 64
-SCHEDULER_KEYS = ("normalization", "gains", "opening")
 # "@" introduces a confidence, and "," and blanks separate cells.
 SET_NAME = r"[^@,\s]+"
 VARIABLE_NAME = r"[^\W\d]\w*"
@@ -129,24 +127,16 @@ class Reader:
         return Operators(words["and"], words["or"], words["defuzzification"])
 
     def _scheduler(self, node: Node) -> tuple[tuple[str, str], ...]:
-        """Words of the format; beside a normalization, also numbers that are its parameters."""
+        """Words as they stand, with their places; what they mean is for the scheduler to say."""
         document = self.document
-        entries = document.entries(node, "scheduler")
-        settings = []
-        for word, (key, value) in entries.items():
-            if word not in SCHEDULER_KEYS:
-                number = isinstance(value, Scalar) and value.text[:1] in "+-.0123456789"
-                if "normalization" not in entries or not word.isidentifier() or not number:
-                    raise document.error(
-                        key,
-                        f"unknown key in scheduler: {quoted(word)}"
-                        f"{suggestion(word, SCHEDULER_KEYS)}; beside a normalization also the "
-                        "numbers that it takes",
-                    )
-                document.number(value, word)
-            text = Word(document.text(value, word), document.location(value))
-            settings.append((Word(word, document.location(key)), text))
-        return tuple(settings)
+
+        def word(node: Node, role: str) -> Word:
+            return Word(document.text(node, role), document.location(node))
+
+        return tuple(
+            (word(key, "scheduler setting"), word(value, f"scheduler setting {quoted(name)}"))
+            for name, (key, value) in document.entries(node, "scheduler").items()
+        )
 
     # ---------------------------------------------------------------- variables
 

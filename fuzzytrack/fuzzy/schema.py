@@ -9,7 +9,6 @@ from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.reader import (
     FORMAT_VERSION,
     MAX_NAME,
-    SCHEDULER_KEYS,
     SET_NAME,
     VARIABLE_NAME,
 )
@@ -27,15 +26,22 @@ __all__ = ["dumps_schema", "rulebase_schema"]
 
 Schema = dict[str, Any]
 
-_SCHEDULER = {
-    "normalization": "How innovations become the inputs, e.g. chan.",
-    "gains": "What the outputs are: w-domain, kalata or direct.",
-    "opening": "Gains of a new track, growing-memory; those of the rules from the start without.",
+_ANY_SETTINGS: Schema = {
+    "description": "Settings for a gain scheduler that uses the rule base.",
+    "type": "object",
+    "minProperties": 1,
+    "additionalProperties": {"type": ["string", "number"]},
 }
 
 
-def rulebase_schema() -> Schema:
+def rulebase_schema(scheduler: Schema | None = None) -> Schema:
     """JSON Schema (2020-12) of the rule-base format.
+
+    Parameters
+    ----------
+    scheduler : dict, optional
+        Schema of the part ``scheduler``, which the fuzzy engine does not read; any words and
+        numbers unless given. See `fuzzytrack.schedulers.settings.scheduler_schema`.
 
     Returns
     -------
@@ -55,7 +61,7 @@ def rulebase_schema() -> Schema:
             "description": "A table over two inputs, or a list of if/then rules.",
             "oneOf": [_table(), _list()],
         },
-        "scheduler": _scheduler(),
+        "scheduler": _ANY_SETTINGS if scheduler is None else scheduler,
     }
     optional = {"description", "source", "scheduler"}
     top = _closed(
@@ -70,9 +76,9 @@ def rulebase_schema() -> Schema:
     return {**head, **top, "$defs": _definitions()}
 
 
-def dumps_schema() -> str:
-    """Text of ``rulebase.schema.json``."""
-    return json.dumps(rulebase_schema(), indent=2, ensure_ascii=False) + "\n"
+def dumps_schema(scheduler: Schema | None = None) -> str:
+    """Text of `rulebase_schema`; with the settings of gain schedulers ``rulebase.schema.json``."""
+    return json.dumps(rulebase_schema(scheduler), indent=2, ensure_ascii=False) + "\n"
 
 
 def _closed(description: str, properties: Schema, required: tuple[str, ...]) -> Schema:
@@ -138,16 +144,6 @@ def _operators() -> Schema:
         for key, (description, allowed) in words.items()
     }
     return _closed("The algebra of the rules.", properties, tuple(words))
-
-
-def _scheduler() -> Schema:
-    known = {key: _text(_SCHEDULER[key]) for key in SCHEDULER_KEYS}
-    return {
-        **_closed("How a gain scheduler uses the rule base.", known, required=()),
-        "additionalProperties": _number("A number that the normalization takes, by its name."),
-        "if": {"not": {"required": ["normalization"]}},
-        "then": {"propertyNames": {"enum": list(SCHEDULER_KEYS)}},
-    }
 
 
 def _definitions() -> Schema:

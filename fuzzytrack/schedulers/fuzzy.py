@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,23 +10,18 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fuzzytrack.errors import Location, RuleBaseError
+from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.kernel import infer_function
 from fuzzytrack.fuzzy.ramps import find_ramps
-from fuzzytrack.fuzzy.reader import SCHEDULER_KEYS
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.normalizations import Normalization, normalizations
+from fuzzytrack.normalizations import Normalization
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
-from fuzzytrack.schedulers.gain_outputs import SETTINGS, GainOutputs, choices, find_gain_outputs
+from fuzzytrack.schedulers.gain_outputs import GainOutputs
 from fuzzytrack.schedulers.growing_memory import least_squares_gains
-from fuzzytrack.yamltree import suggestion
+from fuzzytrack.schedulers.settings import SchedulerSettings, read_settings
 
 __all__ = ["FuzzyScheduler"]
-
-OPENINGS = ("growing-memory",)
-
-Settings = dict[str, str]
 
 
 @schedulers.register("fuzzy")
@@ -66,15 +60,11 @@ class FuzzyScheduler(GainScheduler):
 
     rules: RuleBase
     method: str = "exact"
-    normalization: Normalization = field(init=False, repr=False, compare=False)
-    outputs: GainOutputs = field(init=False, repr=False, compare=False)
+    settings: SchedulerSettings = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        settings = _settings(self.rules)
-        object.__setattr__(self, "normalization", _normalization(self.rules, settings))
-        object.__setattr__(self, "outputs", _outputs(self.rules, settings["gains"]))
+        object.__setattr__(self, "settings", read_settings(self.rules))
         _check_range(self.rules)
-        _check_opening(settings)
         _never_silent(self.rules, self.system)
         # Made here, since not every rule base can be compiled.
         _ = self.inference
@@ -83,6 +73,16 @@ class FuzzyScheduler(GainScheduler):
         # Tables are large, and both are quickly made again where they are wanted.
         made = ("system", "inference")
         return {key: value for key, value in vars(self).items() if key not in made}
+
+    @property
+    def normalization(self) -> Normalization:
+        """What makes the inputs of the rule base."""
+        return self.settings.normalization
+
+    @property
+    def outputs(self) -> GainOutputs:
+        """What makes gains of its outputs."""
+        return self.settings.outputs
 
     @property
     def coupled(self) -> bool:  # type: ignore[override]
@@ -107,7 +107,7 @@ class FuzzyScheduler(GainScheduler):
     @property
     def opens(self) -> bool:
         """Whether a new track has the gains of a growing memory first."""
-        return any(key == "opening" for key, _ in self.rules.scheduler)
+        return self.settings.opens
 
     @cached_property
     def system(self) -> FuzzySystem:
@@ -184,94 +184,6 @@ def _is_seen(sigma: float) -> bool:
 def _is_seen_on_all_axes(sigma: tuple[float, ...]) -> bool:
     # A plot is seen on all axes or on none.
     return sigma[0] != math.inf
-
-
-def _settings(rules: RuleBase) -> Settings:
-    settings = dict(rules.scheduler)
-    for key in ("normalization", "gains"):
-        if key not in settings:
-            raise RuleBaseError(
-                f"{rules.name} cannot schedule gains: no scheduler setting {key!r}; it needs "
-                "scheduler: {normalization: chan, gains: w-domain} or the like"
-            )
-    return settings
-
-
-def _location(word: str) -> Location | None:
-    return getattr(word, "location", None)
-
-
-def _normalization(rules: RuleBase, settings: Settings) -> Normalization:
-    name = settings["normalization"]
-    if name not in normalizations.names():
-        raise RuleBaseError(
-            f"unknown normalization {str(name)!r}; one of {', '.join(normalizations.names())}",
-            _location(name),
-        )
-    normalization = _made(normalizations.get(name), name, settings)
-    if len(rules.inputs) > len(normalization.signals):
-        raise RuleBaseError(
-            f"normalization {str(name)!r} gives {len(normalization.signals)} signals "
-            f"({', '.join(normalization.signals)}); {rules.name} has {len(rules.inputs)} inputs",
-            _location(name),
-        )
-    return normalization
-
-
-def _made(factory: Callable[..., Normalization], name: str, settings: Settings) -> Normalization:
-    """Make the normalisation with the numbers that stand beside its name."""
-    parameters = inspect.signature(factory).parameters
-    numbers = {}
-    for key, word in settings.items():
-        if key in SCHEDULER_KEYS:
-            continue
-        if key not in parameters:
-            raise RuleBaseError(
-                f"unknown scheduler setting {str(key)!r} for normalization {str(name)!r}"
-                f"{suggestion(key, (*SCHEDULER_KEYS, *parameters))}",
-                _location(key),
-            )
-        try:
-            numbers[str(key)] = float(word)
-        except ValueError:
-            raise RuleBaseError(
-                f"{key} of normalization {str(name)!r} must be a number, got {str(word)!r}",
-                _location(word),
-            ) from None
-    missing = [key for key, p in parameters.items() if p.default is p.empty and key not in numbers]
-    if missing:
-        raise RuleBaseError(
-            f"normalization {str(name)!r} needs the scheduler settings {', '.join(missing)}",
-            _location(name),
-        )
-    try:
-        return factory(**numbers)
-    except ValueError as error:
-        places = [_location(settings[key]) for key in numbers if key in str(error)]
-        raise RuleBaseError(str(error), places[0] if places else _location(name)) from error
-
-
-def _check_opening(settings: Settings) -> None:
-    opening = settings.get("opening")
-    if opening is not None and opening not in OPENINGS:
-        raise RuleBaseError(
-            f"unknown opening {str(opening)!r}; one of {', '.join(OPENINGS)}", _location(opening)
-        )
-
-
-def _outputs(rules: RuleBase, gains: str) -> GainOutputs:
-    if gains not in SETTINGS:
-        raise RuleBaseError(
-            f"unknown gains {str(gains)!r}; one of {', '.join(SETTINGS)}", _location(gains)
-        )
-    outputs = find_gain_outputs(rules.output_names)
-    if outputs is None or outputs.setting != gains:
-        raise RuleBaseError(
-            f"gains {str(gains)!r} need outputs {choices(gains)}; {rules.name} has "
-            f"{', '.join(rules.output_names)}",
-            _location(gains),
-        )
-    return outputs
 
 
 def _check_range(rules: RuleBase) -> None:

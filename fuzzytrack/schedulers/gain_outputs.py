@@ -17,7 +17,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, bilinear, kalata_damping
 
-__all__ = ["SETTINGS", "GainOutputs", "choices", "find_gain_outputs", "gains_of"]
+__all__ = ["GAIN_SETTINGS", "GainOutputs", "choices", "find_gain_outputs", "gains_of"]
 
 #: From the outputs, in the order of the rule base, to (α, β, γ, retention of acceleration).
 Conversion = Callable[[tuple[float, ...]], tuple[float, float, float, float]]
@@ -155,7 +155,7 @@ _ALL: tuple[GainOutputs, ...] = (
 )
 
 #: Words for the scheduler setting ``gains``.
-SETTINGS = tuple(dict.fromkeys(outputs.setting for outputs in _ALL))
+GAIN_SETTINGS = tuple(dict.fromkeys(outputs.setting for outputs in _ALL))
 
 
 def find_gain_outputs(output_names: Collection[str]) -> GainOutputs | None:

@@ -9,6 +9,7 @@ from fuzzytrack.cli.rulebase_tables import _cell
 from fuzzytrack.fuzzy.loading import rulebase_path
 from fuzzytrack.fuzzy.schema import dumps_schema
 from fuzzytrack.schedulers import review as reviewing
+from fuzzytrack.schedulers.settings import scheduler_schema
 
 LIST = """\
 rulebase: 1
@@ -240,9 +241,9 @@ def test_set_that_cannot_write_leaves_the_file(fails, mine, monkeypatch):
 
 
 def test_schema(run, tmp_path):
-    assert run("rulebase", "schema").stdout == dumps_schema()
+    assert run("rulebase", "schema").stdout == dumps_schema(scheduler_schema())
     assert run("rulebase", "schema", "-o", tmp_path / "s.json").exit_code == 0
-    assert (tmp_path / "s.json").read_text() == dumps_schema()
+    assert (tmp_path / "s.json").read_text() == dumps_schema(scheduler_schema())
 
 
 # -------------------------------------------------------------------- surface

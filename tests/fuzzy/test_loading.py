@@ -176,7 +176,12 @@ TABLE_MISTAKES = {
     "no version": ("rulebase: 1", "nam: x", "nam: x", ["lacks its format version"]),
     "unknown key": ("label:", "lable:", "lable", ["'lable'", "mean 'label'", "universe", "sets"]),
     "unknown top key": ("scheduler:", "sheduler:", "sheduler", ["mean 'scheduler'"]),
-    "unknown setting": ("gains:", "gain:", "gain: d", ["mean 'gains'", "normalization"]),
+    "list for a setting": (
+        "{gains: direct}",
+        "{gains: [direct]}",
+        "[direct]",
+        ["'gains' must be a word", "a list"],
+    ),
     "default of an input": ("unit: m", "default: 1", "default", ["'default'", "allowed"]),
     "missing key": ("    universe: [0, 1, 11]\n", "", "label", ["lacks the key 'universe'"]),
     "missing operator": ("or: sum, ", "", "{and", ["lacks the key 'or'"]),

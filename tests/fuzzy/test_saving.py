@@ -211,8 +211,14 @@ def test_what_a_file_may_not_hold_is_not_written():
         dumps_rulebase(replace(rules, outputs=(wrong, rules.outputs[1])))
     with pytest.raises(RuleBaseError, match=r"U\+0007"):
         dumps_rulebase(replace(rules, name="a\u0007"))
-    with pytest.raises(RuleBaseError, match="'model'"):
-        dumps_rulebase(replace(rules, scheduler=(("model", "x"),)))
+    with pytest.raises(RuleBaseError, match="scheduler setting 'model' must be a word"):
+        dumps_rulebase(replace(rules, scheduler=(("model", ""),)))
+
+
+def test_settings_of_a_scheduler_are_kept_whatever_they_are():
+    settings = (("model", "x y"), ("no", "1e-3"), ("limit", "-2"), ("two words", "true"))
+    rules = replace(loads_rulebase(TABLE), scheduler=settings)
+    assert loads_rulebase(dumps_rulebase(rules)) == rules
 
 
 # ------------------------------------------------------------------ files

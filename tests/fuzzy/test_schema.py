@@ -15,8 +15,10 @@ from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.rulebase import DEFUZZIFICATIONS
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.schema import dumps_schema, rulebase_schema
+from fuzzytrack.schedulers.settings import scheduler_schema
 
-VALIDATOR = Draft202012Validator(rulebase_schema())
+SCHEMA = rulebase_schema(scheduler_schema())
+VALIDATOR = Draft202012Validator(SCHEMA)
 
 
 def valid(text):
@@ -25,15 +27,23 @@ def valid(text):
 
 def test_the_shipped_file_is_the_generated_one():
     shipped = rulebase_path("tipper").with_name("rulebase.schema.json")
-    assert shipped.read_text(encoding="utf-8") == dumps_schema(), (
-        "write it anew: python -c 'from fuzzytrack.fuzzy.schema import dumps_schema; "
-        'print(dumps_schema(), end="")\''
+    assert shipped.read_text(encoding="utf-8") == dumps_schema(scheduler_schema()), (
+        "write it anew: fuzzytrack rulebase schema -o rulebases/rulebase.schema.json"
     )
     assert json.loads(dumps_schema()) == rulebase_schema()
 
 
-def test_it_is_a_schema():
-    Draft202012Validator.check_schema(rulebase_schema())
+@pytest.mark.parametrize("schema", [SCHEMA, rulebase_schema()])
+def test_it_is_a_schema(schema):
+    Draft202012Validator.check_schema(schema)
+
+
+def test_the_engine_itself_takes_any_settings():
+    valid = Draft202012Validator(rulebase_schema()).is_valid
+    text = TABLE.replace("{gains: direct}", "{model: x, limit: 2}")
+    loads_rulebase(text)
+    assert valid(yaml.safe_load(text))
+    assert not valid(yaml.safe_load(TABLE.replace("{gains: direct}", "{gains: [direct]}")))
 
 
 def test_it_knows_the_vocabulary():
@@ -83,7 +93,7 @@ def test_every_form_is_valid(text):
         ("[S-S, S-L]", "[S-S, S L]"),
         ("[S-S, S-L]", "[S-S, S-L@half]"),
         ("[S-S, S-L]", "[S-S, {}]"),
-        ("gains: direct", "gain: direct"),
+        ("gains: direct", "gains: [direct]"),
     ],
 )
 def test_typical_mistakes_are_not(old, new):

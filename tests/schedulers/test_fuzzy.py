@@ -151,15 +151,34 @@ def test_numbers_of_the_normalisation(rules):
     ("settings", "word"),
     [
         ("{normalization: smoothed, gain: w-domain}", "gain"),
+        ("{normalizaton: smoothed, gains: w-domain}", "normalizaton"),
         ("{gains: w-domain, rho: 0.5}", "rho"),
         ("{normalization: smoothed, rho-1: 0.5, gains: w-domain}", "rho-1"),
     ],
 )
-def test_keys_that_no_scheduler_could_take_are_refused_on_loading(rules, settings, word):
-    old = "{normalization: chan, gains: w-domain}"
-    with pytest.raises(ft.RuleBaseError, match=f"unknown key in scheduler: '{word}'") as caught:
-        changed(rules, old, settings)
+def test_unknown_keys_are_shown_where_they_stand(rules, settings, word):
+    wrong = changed(rules, "{normalization: chan, gains: w-domain}", settings)
+    with pytest.raises(ft.RuleBaseError, match=f"unknown scheduler setting '{word}'") as caught:
+        ft.FuzzyScheduler(wrong)
     assert "allowed: normalization, gains, opening" in str(caught.value)
+    assert caught.value.location.file == "my.yaml"
+    line = dumps_rulebase(wrong).splitlines()[caught.value.location.line - 1]
+    assert line[caught.value.location.column - 1 :].startswith(word)
+
+
+@pytest.mark.parametrize("number", ["half", "1_0", "inf", "nan"])
+def test_a_setting_of_a_normalization_must_be_a_number(rules, number):
+    settings = f"{{normalization: smoothed, rho: {number}, gains: w-domain}}"
+    wrong = changed(rules, "{normalization: chan, gains: w-domain}", settings)
+    message = f"my.yaml:.*: rho of normalization 'smoothed' must be a number, got '{number}'"
+    with pytest.raises(ft.RuleBaseError, match=message):
+        ft.FuzzyScheduler(wrong)
+
+
+def test_a_missing_key_is_shown_where_the_others_stand(rules):
+    wrong = changed(rules, "chan, gains: w-domain}", "chan}")
+    with pytest.raises(ft.RuleBaseError, match="no scheduler setting 'gains'") as caught:
+        ft.FuzzyScheduler(wrong)
     assert caught.value.location.file == "my.yaml"
 
 

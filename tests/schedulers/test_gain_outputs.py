@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack.gains import alpha_beta_from_w, kalata
-from fuzzytrack.schedulers.gain_outputs import SETTINGS, choices, find_gain_outputs, gains_of
+from fuzzytrack.schedulers.gain_outputs import GAIN_SETTINGS, choices, find_gain_outputs, gains_of
 
 # In an order other than that of the names.
 RULE_BASES = [
@@ -55,6 +55,6 @@ def test_outputs_that_are_no_gains():
 
 
 def test_words_for_messages():
-    assert SETTINGS == ("w-domain", "kalata", "direct")
+    assert GAIN_SETTINGS == ("w-domain", "kalata", "direct")
     assert choices("direct") == "alpha, beta or alpha, beta, gamma"
     assert choices().startswith("stiffness, damping or stiffness or alpha")

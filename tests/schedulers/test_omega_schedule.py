@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
-from fuzzytrack.fuzzy.schema import rulebase_schema
 from fuzzytrack.gains import growing_memory, kalata
+from fuzzytrack.schedulers.settings import scheduler_schema
 from fuzzytrack.simulation.published import track_set
 
 LEVELS = (0.29, 0.308, 0.556, 0.778)
@@ -56,8 +56,8 @@ def test_negative_stiffness_is_refused(rules):
 
 def test_the_schema_knows_the_settings(rules):
     jsonschema = pytest.importorskip("jsonschema")
-    part = rulebase_schema()["properties"]["scheduler"]
-    valid = jsonschema.Draft202012Validator(json.loads(json.dumps(part))).is_valid
+    part = json.loads(json.dumps(scheduler_schema()))
+    valid = jsonschema.Draft202012Validator(part).is_valid
     right = {"normalization": "smoothed", "rho": 0.774, "gains": "kalata"}
     assert valid(right)
     assert valid({**right, "opening": "growing-memory"})

@@ -1,0 +1,184 @@
+"""Scheduler settings of a rule base: the keys and words there are, and what is made of them.
+
+The fuzzy engine keeps the settings unread, each word with its place in the file.
+"""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+from typing import Any
+
+from fuzzytrack.errors import Location, RuleBaseError
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.normalizations import Normalization, normalizations
+from fuzzytrack.schedulers.gain_outputs import (
+    GAIN_SETTINGS,
+    GainOutputs,
+    choices,
+    find_gain_outputs,
+)
+from fuzzytrack.yamltree import is_number, suggestion
+
+__all__ = ["KEYS", "OPENINGS", "SchedulerSettings", "read_settings", "scheduler_schema"]
+
+KEYS = ("normalization", "gains", "opening")
+OPENINGS = ("growing-memory",)
+
+_DESCRIPTIONS = {
+    "normalization": "How innovations become the inputs, e.g. chan.",
+    "gains": f"What the outputs are: {', '.join(GAIN_SETTINGS[:-1])} or {GAIN_SETTINGS[-1]}.",
+    "opening": f"Gains of a new track: {OPENINGS[0]}. Without it, those of the rules.",
+}
+
+
+@dataclass(frozen=True)
+class SchedulerSettings:
+    """How a rule base schedules gains.
+
+    Attributes
+    ----------
+    normalization : Normalization
+        Makes the inputs of the rule base.
+    outputs : GainOutputs
+        Makes gains of its outputs.
+    opens : bool
+        Whether a new track has the gains of a growing memory first.
+    """
+
+    normalization: Normalization
+    outputs: GainOutputs
+    opens: bool
+
+
+def read_settings(rules: RuleBase) -> SchedulerSettings:
+    """Read the scheduler settings of a rule base.
+
+    Raises
+    ------
+    RuleBaseError
+        If a key is unknown or missing, a word is unknown, a number does not fit, or the settings do
+        not fit the inputs and outputs; names the place in the file where there is one.
+    """
+    settings = dict(rules.scheduler)
+    if "normalization" not in settings:
+        _only_known_keys(settings)
+        raise _missing(rules, "normalization")
+    normalization = _normalization(settings)
+    if "gains" not in settings:
+        raise _missing(rules, "gains")
+    _enough_signals(rules, normalization, settings["normalization"])
+    outputs = _outputs(rules, settings["gains"])
+    opening = settings.get("opening")
+    if opening is not None and opening not in OPENINGS:
+        raise _unknown("opening", opening, OPENINGS)
+    return SchedulerSettings(normalization, outputs, opening is not None)
+
+
+def scheduler_schema() -> dict[str, Any]:
+    """JSON Schema of the settings, for `fuzzytrack.fuzzy.schema.rulebase_schema`."""
+    return {
+        "description": "How a gain scheduler uses the rule base.",
+        "type": "object",
+        "properties": {
+            key: {"description": text, "type": "string", "minLength": 1}
+            for key, text in _DESCRIPTIONS.items()
+        },
+        "required": [],
+        "additionalProperties": {
+            "description": "A number that the normalization takes, by its name.",
+            "type": "number",
+        },
+        "minProperties": 1,
+        "if": {"not": {"required": ["normalization"]}},
+        "then": {"propertyNames": {"enum": list(KEYS)}},
+    }
+
+
+def _location(word: str) -> Location | None:
+    return getattr(word, "location", None)
+
+
+def _missing(rules: RuleBase, key: str) -> RuleBaseError:
+    places = [_location(word) for word, _ in rules.scheduler]
+    return RuleBaseError(
+        f"{rules.name} cannot schedule gains: no scheduler setting {key!r}; it needs "
+        "scheduler: {normalization: chan, gains: w-domain} or the like",
+        places[0] if places else None,
+    )
+
+
+def _unknown(key: str, word: str, allowed: tuple[str, ...]) -> RuleBaseError:
+    return RuleBaseError(
+        f"unknown {key} {str(word)!r}; one of {', '.join(allowed)}", _location(word)
+    )
+
+
+def _only_known_keys(settings: dict[str, str]) -> None:
+    for key in settings:
+        if key not in KEYS:
+            raise RuleBaseError(
+                f"unknown scheduler setting {str(key)!r}{suggestion(key, KEYS)}; beside a "
+                "normalization also the numbers that it takes",
+                _location(key),
+            )
+
+
+def _normalization(settings: dict[str, str]) -> Normalization:
+    """Make the normalization with the numbers that stand beside its name."""
+    name = settings["normalization"]
+    if name not in normalizations.names():
+        raise _unknown("normalization", name, normalizations.names())
+    factory = normalizations.get(name)
+    parameters = inspect.signature(factory).parameters
+    numbers = {}
+    for key, word in settings.items():
+        if key in KEYS:
+            continue
+        if key not in parameters:
+            raise RuleBaseError(
+                f"unknown scheduler setting {str(key)!r} for normalization {str(name)!r}"
+                f"{suggestion(key, (*KEYS, *parameters))}",
+                _location(key),
+            )
+        if not is_number(word):
+            raise RuleBaseError(
+                f"{key} of normalization {str(name)!r} must be a number, got {str(word)!r}",
+                _location(word),
+            )
+        numbers[str(key)] = float(word)
+    missing = [key for key, p in parameters.items() if p.default is p.empty and key not in numbers]
+    if missing:
+        raise RuleBaseError(
+            f"normalization {str(name)!r} needs the scheduler settings {', '.join(missing)}",
+            _location(name),
+        )
+    try:
+        made: Normalization = factory(**numbers)
+    except ValueError as error:
+        places = [_location(settings[key]) for key in numbers if key in str(error)]
+        raise RuleBaseError(str(error), places[0] if places else _location(name)) from error
+    return made
+
+
+def _enough_signals(rules: RuleBase, normalization: Normalization, name: str) -> None:
+    signals = normalization.signals
+    if len(rules.inputs) > len(signals):
+        raise RuleBaseError(
+            f"normalization {str(name)!r} gives {len(signals)} signals ({', '.join(signals)}); "
+            f"{rules.name} has {len(rules.inputs)} inputs",
+            _location(name),
+        )
+
+
+def _outputs(rules: RuleBase, gains: str) -> GainOutputs:
+    if gains not in GAIN_SETTINGS:
+        raise _unknown("gains", gains, GAIN_SETTINGS)
+    outputs = find_gain_outputs(rules.output_names)
+    if outputs is None or outputs.setting != gains:
+        raise RuleBaseError(
+            f"gains {str(gains)!r} need outputs {choices(gains)}; {rules.name} has "
+            f"{', '.join(rules.output_names)}",
+            _location(gains),
+        )
+    return outputs
