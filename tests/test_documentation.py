@@ -1,7 +1,9 @@
 """The code on the pages runs, and the rule bases on them load."""
 
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -33,28 +35,32 @@ def a_folder_with_plots(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 @pytest.mark.usefixtures("a_folder_with_plots")
-def test_python_on_the_page_runs(page):
+def test_python_on_the_page_runs(page, monkeypatch):
     known = {plugin.name for registry in (schedulers, normalizations) for plugin in registry}
     rules = ft.load_rulebase("stiffness-damping")
-    namespace = {
-        # What a reader has at hand from the pages before.
-        "ft": ft,
-        "np": np,
-        "rules": rules,
-        "system": ft.FuzzySystem(rules),
-        "tracker": ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)),
-        "t": np.arange(4.0),
-        "z": np.array([0.0, 10.0, 19.0, 31.0]),
-        "z0": 0.0,
-        "t0": 0.0,
-        "z1": 1.0,
-        "t1": 1.0,
-        "MyScheduler": lambda: ft.FixedGains(0.5, 0.2),
-        "__name__": "page",
-    }
+    # Classes of the page pickle: they can be found in a module.
+    module = ModuleType("page")
+    monkeypatch.setitem(sys.modules, "page", module)
+    vars(module).update(
+        {
+            # What a reader has at hand from the pages before.
+            "ft": ft,
+            "np": np,
+            "rules": rules,
+            "system": ft.FuzzySystem(rules),
+            "tracker": ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)),
+            "t": np.arange(4.0),
+            "z": np.array([0.0, 10.0, 19.0, 31.0]),
+            "z0": 0.0,
+            "t0": 0.0,
+            "z1": 1.0,
+            "t1": 1.0,
+            "MyScheduler": lambda: ft.FixedGains(0.5, 0.2),
+        }
+    )
     try:
         for block in blocks(page, "python"):
-            exec(compile(block, str(page), "exec"), namespace)
+            exec(compile(block, str(page), "exec"), vars(module))
     finally:
         for registry in (schedulers, normalizations):
             for name in set(registry.names()) - known:

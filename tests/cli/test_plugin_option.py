@@ -1,6 +1,8 @@
 """``--plugin FILE.py``, on its own and with other processes and computers at work."""
 
 import json
+import re
+from pathlib import Path
 
 import pytest
 
@@ -92,6 +94,21 @@ def test_a_rule_base_on_a_normalization_of_a_script(run, fails, csv, script):
     assert run("rulebase", "check", rules, "--plugin", script).exit_code == 0
     normalizations.unregister("scripted")
     assert "unknown normalization 'scripted'" in run("rulebase", "check", rules).stderr
+
+
+@pytest.mark.parametrize(
+    ("page", "name", "wanted"),
+    [("write-a-scheduler", "settling:longest=10", "growing-memory:limit=10")],
+)
+def test_the_first_example_of_a_page_is_a_script(run, csv, script, page, name, wanted):
+    text = (Path(__file__).parents[2] / "docs" / f"{page}.md").read_text()
+    path = csv(re.search(r"^```python\n(.*?)^```", text, re.M | re.S)[1], f"{page}.py")
+    file = csv("t,x\n0,0\n1,10\n2,21\n3,30\n4,44\n")
+    words = ("track", file, "--json", "--tracker")
+    try:
+        assert numbers(run(*words, name, "--plugin", path)) == numbers(run(*words, wanted))
+    finally:
+        schedulers.unregister(name.partition(":")[0])
 
 
 def test_processes_know_the_script(run, script):
