@@ -16,7 +16,7 @@ from fuzzytrack.cli.compare import (
     print_comparison,
     trackers_named,
 )
-from fuzzytrack.cli.output import print_json, progress, say
+from fuzzytrack.cli.output import output_folder, print_json, progress, say
 from fuzzytrack.cli.pictures import save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
@@ -51,10 +51,7 @@ def demo(
     A target flies straight at 150 m/s, turns by 180 degrees at 3 degrees a second, and flies
     straight again; it is seen every second with 50 m of noise on each axis.
     """
-    folder = Path(output)
-    if folder.exists() and not folder.is_dir():
-        raise NotADirectoryError(None, "is not a folder", output)
-    folder.mkdir(exist_ok=True)
+    folder = output_folder(output)
     t, truth = turning_target()
     trackers = trackers_named(DEFAULT_TRACKERS)
     with progress("comparing") as watch:

@@ -5,20 +5,28 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import typer
 
+from fuzzytrack.io.json_types import plain
 from fuzzytrack.tasks import Progress
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-__all__ = ["plain", "print_json", "print_table", "progress", "say", "show", "with_error"]
+__all__ = [
+    "output_folder",
+    "print_json",
+    "print_table",
+    "progress",
+    "say",
+    "show",
+    "with_error",
+]
 
 
 def say(text: str = "") -> None:
@@ -100,19 +108,13 @@ def print_json(value: Any) -> None:
     say(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def plain(value: Any) -> Any:
-    """Value in the types of JSON, with null for NaN and infinity."""
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return str(value) if isinstance(value, Path) else value
+def output_folder(path: str) -> Path:
+    """Folder for output, made if it does not exist; OSError if it is a file or cannot be made."""
+    folder = Path(path)
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(None, "is not a folder", path)
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 @contextmanager

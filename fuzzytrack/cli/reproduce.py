@@ -11,9 +11,18 @@ from typing import Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import plain, print_json, print_table, progress, say, show, with_error
+from fuzzytrack.cli.output import (
+    output_folder,
+    print_json,
+    print_table,
+    progress,
+    say,
+    show,
+    with_error,
+)
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import whole_file
+from fuzzytrack.io.json_types import plain
 from fuzzytrack.papers.catalog import COST, PAPERS
 from fuzzytrack.papers.catalog import reproduce as rebuild
 from fuzzytrack.papers.reproduction import Reproduction
@@ -43,7 +52,7 @@ def reproduce(
     chosen = list(PAPERS) if paper == "all" else [paper]
     if chosen[0] not in PAPERS:
         raise ValueError(f"no such paper {paper!r}{suggestion(paper, [*PAPERS, 'all'])}")
-    folder = None if output is None else _folder(output)
+    folder = None if output is None else output_folder(output)
     found = []
     with progress(f"rebuilding {paper}") as watch:
         before, all_of_it = 0.0, sum(COST[name] for name in chosen)
@@ -60,14 +69,6 @@ def reproduce(
         _print(each)
     for path in written:
         say(f"wrote {path}")
-
-
-def _folder(output: str) -> Path:
-    folder = Path(output)
-    if folder.exists() and not folder.is_dir():
-        raise NotADirectoryError(None, "is not a folder", output)
-    folder.mkdir(exist_ok=True)
-    return folder
 
 
 def _write(folder: Path, found: list[Reproduction]) -> list[Path]:

@@ -12,7 +12,15 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.compare import trackers_named
-from fuzzytrack.cli.output import print_json, print_table, progress, say, show, with_error
+from fuzzytrack.cli.output import (
+    output_folder,
+    print_json,
+    print_table,
+    progress,
+    say,
+    show,
+    with_error,
+)
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.simulation.scenario import Scenario
@@ -115,10 +123,7 @@ def _chosen(text: str | None, scenario: Scenario) -> Mapping[str, Tracker] | Non
 
 def _folder(output: str) -> Path:
     """Folder, made if it does not exist; checks before the work that its files can be written."""
-    folder = Path(output)
-    if folder.exists() and not folder.is_dir():
-        raise NotADirectoryError(None, "is not a folder", output)
-    folder.mkdir(exist_ok=True)
+    folder = output_folder(output)
     for name in _FILES:
         check_output(folder / name)
     return folder

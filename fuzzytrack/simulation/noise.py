@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import positive
 
-__all__ = ["WHITE", "Noise", "Plots", "noisy_plots", "streams"]
+__all__ = ["WHITE", "Noise", "Plots", "noisy_plots", "streams", "truth_of_runs"]
 
 
 @dataclass(frozen=True)
@@ -160,9 +160,26 @@ def noisy_plots(
 
 
 def truth_of_runs(truth: ArrayLike, runs: int) -> Array:
-    """True positions with an axis for runs, of length 1 if it is the same for all of them."""
+    """True positions with an axis for runs, of length 1 if they are the same in all runs.
+
+    Parameters
+    ----------
+    truth : array_like, shape (n_steps, n_axes) or (n_steps, n_runs, n_axes)
+        True positions (m), the same in all runs or each run's own.
+    runs : int
+        Number of runs.
+
+    Returns
+    -------
+    ndarray, shape (n_steps, 1, n_axes) or (n_steps, n_runs, n_axes)
+
+    Raises
+    ------
+    ValueError
+        If there is no run, or shapes do not fit.
+    """
     if not runs:
-        raise ValueError("runs: needs one at least")
+        raise ValueError("runs: at least one is needed")
     positions = np.asarray(truth, dtype=np.float64)
     if positions.ndim == 2:
         positions = positions[:, None]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.simulation.noise import streams
+from fuzzytrack.simulation.noise import streams, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
 
 __all__ = ["plot_columns", "truth_columns"]
@@ -43,7 +43,7 @@ def plot_columns(scenario: Scenario, runs: int, seed: int) -> Columns:
     return {
         **_clock(scenario, runs),
         **_by_axis("{}_m", plots.z),
-        **_by_axis("true_{}_m", np.broadcast_to(_by_run(position), plots.z.shape)),
+        **_by_axis("true_{}_m", np.broadcast_to(truth_of_runs(position, runs), plots.z.shape)),
         **_by_axis("sigma_{}_m", plots.sigma),
     }
 
@@ -61,13 +61,8 @@ def truth_columns(scenario: Scenario, runs: int) -> Columns:
     dict of str to sequence
         ``run`` from 0, ``t_s``, and ``x_m`` and so on for each axis.
     """
-    true = _by_run(scenario.truth(0, runs)[0])
+    true = truth_of_runs(scenario.truth(0, runs)[0], runs)
     return {**_clock(scenario, true.shape[1]), **_by_axis("{}_m", true)}
-
-
-def _by_run(position: Array) -> Array:
-    """Positions with an axis for runs, of length 1 if they are the same in all."""
-    return position if position.ndim == 3 else position[:, None]
 
 
 def _clock(scenario: Scenario, runs: int) -> Columns:

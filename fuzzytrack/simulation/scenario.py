@@ -10,7 +10,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive
-from fuzzytrack.simulation.noise import WHITE, Noise, Plots, noisy_plots
+from fuzzytrack.simulation.noise import WHITE, Noise, Plots, noisy_plots, truth_of_runs
 from fuzzytrack.simulation.sensor_field import SensorField
 
 __all__ = ["FieldSensors", "PlotNoise", "Scenario", "Sensors"]
@@ -71,8 +71,8 @@ class PlotNoise:
         """Plots of a target; see `Sensors.measure`."""
         plots = noisy_plots(truth, self.sigma, runs, self.noise)
         z, sigma = plots.z, plots.sigma
-        known = truth if truth.ndim == 3 else truth[:, None]
-        z[: self.clean] = np.broadcast_to(known, z.shape)[: self.clean]
+        true = truth_of_runs(truth, len(runs))
+        z[: self.clean] = np.broadcast_to(true, z.shape)[: self.clean]
         if self.detection < 1:
             # From a stream of its own, so that the noise does not depend on `detection`.
             draws = [np.random.default_rng(run.spawn(1)[0]).random(len(z)) for run in _copies(runs)]

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.recordings.ragged import Batch, batches
 from fuzzytrack.tasks import Progress
+from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["Comparison", "compare", "compare_tracks"]
@@ -241,7 +242,7 @@ class _Sums:
         noise = [np.random.default_rng(s).standard_normal(self.truth.shape) for s in streams]
         plots = self.truth + self.sigma * np.stack(noise)
         del noise
-        errors = [_squares(plots, self.truth)]
+        errors = [squared_distance(plots - self.truth)]
         for number, tracker in enumerate(self.trackers.values(), 1):
             errors.extend(self._errors(tracker, plots))
             yield number
@@ -271,7 +272,7 @@ class _Sums:
                 result = tracker.run(times, z, self.sigma)
             truth = self.truth[batch.places][:, None]
             for errors, positions in ((predicted, result.predicted), (filtered, result.filtered)):
-                square = _squares(positions.reshape(z.shape), truth)
+                square = squared_distance(positions.reshape(z.shape) - truth)
                 errors[:, batch.places] = square.swapaxes(0, 1)
         # The row at the end belongs to no track.
         predicted[:, -1] = filtered[:, -1] = np.nan
@@ -289,15 +290,6 @@ class _Sums:
             filtered_mse=means[2::2],
             measured_mse=means[0],
         )
-
-
-def _squares(positions: Array, truth: Array) -> Array:
-    """Squared distances, summed axis by axis in one order."""
-    difference = positions - truth
-    total = np.zeros(difference.shape[:-1])
-    for k in range(difference.shape[-1]):
-        total += difference[..., k] ** 2
-    return total
 
 
 def _root(mse: Array) -> Array:

@@ -31,6 +31,7 @@ __all__ = [
     "quantiles",
     "root",
     "run_means",
+    "squared_distance",
     "variance",
 ]
 
@@ -151,12 +152,18 @@ def distance(errors: ArrayLike) -> Array:
     -------
     ndarray, shape (...)
     """
+    total = squared_distance(errors)
+    return np.asarray(np.sqrt(total, out=total))
+
+
+def squared_distance(errors: ArrayLike) -> Array:
+    """Squared length of errors over the axes; as for `distance`."""
     each = np.asarray(errors, dtype=np.float64)
     # Axis by axis, so that the result does not depend on the other dimensions to the last bit.
-    total = np.square(each[..., 0])
+    total: Array = np.square(each[..., 0])
     for k in range(1, each.shape[-1]):
         total += np.square(each[..., k])
-    return np.asarray(np.sqrt(total, out=total))
+    return total
 
 
 def compared(predicted: ArrayLike) -> Mask:

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.simulation.noise import Plots
+from fuzzytrack.simulation.noise import Plots, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.starting import prepare_start
 from fuzzytrack.tasks import Progress, run_tasks
@@ -222,7 +222,8 @@ def run_chunk(
     plots = scenario.sensors.measure(position, streams)
     if scenario.prepare_start:
         plots = _prepared(scenario.time, plots)
-    true, moving = _by_run(position), None if velocity is None else _by_run(velocity)
+    true = truth_of_runs(position, len(runs))
+    moving = None if velocity is None else truth_of_runs(velocity, len(runs))
     part = _blank(len(trackers), plots.z.shape, moving is not None, scenario.process_sigma)
     part["measured"] = _turned(plots.z - true)
     for k, tracker in enumerate(trackers.values()):
@@ -265,10 +266,6 @@ def _keep(part: dict[str, Array], k: int, result: TrackResult) -> None:
     of_it = (result.predicted, result.filtered, gains.alpha, gains.beta, gains.gamma)
     for name, array in zip(_SAMPLED, of_it, strict=True):
         part[f"sample_{name}"][k] = array[:, 0]
-
-
-def _by_run(values: Array) -> Array:
-    return values if values.ndim == 3 else values[:, None]
 
 
 def _turned(values: Array) -> Array:

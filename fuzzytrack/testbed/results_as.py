@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.io.json_types import plain
 from fuzzytrack.version import __version__
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def json_dict(
         ``fuzzytrack`` (version), the facts, ``trackers``, ``time``, and ``curves``: those of each
         tracker by its name.
     """
-    content: dict[str, Any] = _plain(
+    content: dict[str, Any] = plain(
         {
             "fuzzytrack": __version__,
             **facts,
@@ -90,12 +90,3 @@ def data_frame(names: Sequence[str], time: Array, curves: Mapping[str, Array]) -
             **{name: curve.ravel() for name, curve in curves.items()},
         }
     )
-
-
-def _plain(value: Any) -> Any:
-    """Value with None for every number that is not finite."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

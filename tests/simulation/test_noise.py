@@ -88,7 +88,7 @@ def test_wrong_arguments():
         streams(1, 0)
     with pytest.raises(ValueError, match="seed must not be negative, got -1"):
         streams(-1, 1)
-    with pytest.raises(ValueError, match="runs: needs one at least"):
+    with pytest.raises(ValueError, match="runs: at least one is needed"):
         noisy_plots(np.zeros((3, 2)), 1.0, [])
     with pytest.raises(ValueError, match="sigma must be finite and > 0, got 0"):
         noisy_plots(np.zeros((3, 2)), 0.0, streams(1, 1))
