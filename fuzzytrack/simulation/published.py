@@ -1,7 +1,7 @@
 """Trajectories of published experiments, and random sets of tracks like them.
 
-Each is a function of nothing, or of a seed, so that a number in a paper can be compared with the
-same target. What a paper leaves open, and how it is read here, stands in each Notes.
+The functions take no arguments, or a seed, so that a result can be compared with a paper's for the
+same target. Their notes say what a paper leaves open, and how it is read here.
 """
 
 from __future__ import annotations
@@ -230,7 +230,7 @@ class TrackSet:
     Attributes
     ----------
     name : str
-        Of the set.
+        Name of the set.
     time : ndarray, shape (n_steps,)
         Times, 0, 1, 2, …
     position : ndarray, shape (n_steps, n_tracks, 2)
@@ -256,15 +256,15 @@ def track_set(name: str, tracks: int, seed: int) -> TrackSet:
     name : {"report", "mixed", "strong"}
         ``report``: the maneuvers M1 to M4 of Llinas et al. (1998) in turn, 20 scans, with speeds of
         3 to 9 m/s, accelerations of 0.002 to 0.006 m/s² and radii of 2500 to 7000 m, to the left,
-        at T = 60 s and noise σ of 115 m. ``mixed``: 60 scans, straight legs of 8 to 20 scans in
-        turn with maneuvers as long, of an acceleration a that is each track's own, with a T²/σ from
-        0.1 to 1 (evenly in its logarithm). ``strong``: the same with a T²/σ from 1 to 3, and three
-        times as fast.
+        at T = 60 s and noise σ of 115 m. ``mixed``: 60 scans, straight legs alternating with
+        maneuvers, each of 8 to 20 scans; each track has one acceleration a, with a T²/σ from 0.1 to
+        1, uniform in its logarithm. ``strong``: the same with a T²/σ from 1 to 3, and three times
+        as fast.
     tracks : int
         Number of tracks, at least 1.
     seed : int
-        Seed, not negative. Each track has a random stream of its own: more tracks leave the first
-        ones as they are.
+        Seed, not negative. Each track has a random stream of its own, so that the first tracks do
+        not depend on the number of tracks.
 
     Returns
     -------
@@ -277,9 +277,9 @@ def track_set(name: str, tracks: int, seed: int) -> TrackSet:
 
     Notes
     -----
-    A maneuver of ``mixed`` and ``strong`` is, with even chances, an acceleration or braking along
-    the track, or a turn of constant speed to either side; never a turn of more than 1 rad a scan,
-    for which a slow target accelerates instead. Headings are random.
+    A maneuver of ``mixed`` and ``strong`` is, with equal probability, an acceleration or braking
+    along the track, or a turn of constant speed to either side. A target that is too slow to turn
+    by less than 1 rad a scan accelerates instead. Headings are random.
 
     Examples
     --------

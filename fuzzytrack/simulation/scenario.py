@@ -110,13 +110,13 @@ class Scenario:
     Parameters
     ----------
     name : str
-        Of the scenario.
+        Name of the scenario.
     time : array_like, shape (n_steps,)
         Times of the scans (s), increasing.
     position : array_like, shape (n_steps, n_axes) or (n_steps, n_tracks, n_axes)
         True positions (m). Of several tracks, run k flies number k modulo n_tracks.
     sensors : Sensors
-        Make the plots.
+        Sensors that make the plots.
     velocity : array_like, optional
         True velocities (m/s), shaped as `position`; without them errors of velocity are not known.
     first_scored : int

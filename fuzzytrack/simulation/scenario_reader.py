@@ -75,7 +75,7 @@ _NOISE_KEYS = ("correlation", "freedom")
 _FIELD_NUMBERS = ("reach", "range_sigma", "bearing_sigma")
 _FIELD_KEYS = ("detection", *_NOISE_KEYS, "linear", "sigma_from")
 
-# What may stand beside the key that says what kind of target, or of sensors, it is.
+# Keys that may stand beside the key that tells the kind of target, or of sensors.
 _TARGET_KEYS = (
     "speed",
     "acceleration",
@@ -92,7 +92,7 @@ class ScenarioReader:
     Parameters
     ----------
     document : Document
-        The tree, which also words the complaints.
+        The document; it gives errors their place in the file.
     """
 
     def __init__(self, document: Document) -> None:
@@ -104,7 +104,7 @@ class ScenarioReader:
         Raises
         ------
         ScenarioError
-            At the first thing that is wrong.
+            At the first error in the document.
         """
         document = self.document
         self._check_version()
@@ -118,7 +118,7 @@ class ScenarioReader:
         if "score" in top:
             first_scored = self._first_scored(top["score"], len(time))
         process = top.get("process_sigma")
-        with self._blaming(top, top["target"]):
+        with self._errors_at(top, top["target"]):
             return Scenario(
                 name=document.text(top["name"], "name"),
                 source=document.text(top["source"], "source") if "source" in top else "",
@@ -197,14 +197,16 @@ class ScenarioReader:
                 given[key] = math.radians(document.number(value, key))
             elif key != "motion":
                 given[key] = document.number(value, key)
-        with self._blaming(fields, node):
+        with self._errors_at(fields, node):
             return *make(**given), 2
 
     def _waypoints(self, node: Node) -> Target:
         document = self.document
         fields = document.fields(node, "target", ("waypoints",), ("leg", "times", "period"))
         if "leg" in fields and "times" in fields:
-            raise document.error(fields["leg"], "leg says what times say already: give one")
+            raise document.error(
+                fields["leg"], "leg and times both set the times of the points; give one"
+            )
         points = self._points(fields["waypoints"], "waypoints")
         leg = document.number(fields["leg"], "leg") if "leg" in fields else 60.0
         times = self._numbers(fields["times"], "times") if "times" in fields else None
@@ -212,7 +214,7 @@ class ScenarioReader:
         last = leg * (len(points) - 1) if times is None else times[-1] - times[0]
         if period > 0 and last / period > MAX_SCANS:
             raise document.error(node, f"more than {MAX_SCANS} scans; make the period longer")
-        with self._blaming({"points": fields["waypoints"], **fields}, node):
+        with self._errors_at({"points": fields["waypoints"], **fields}, node):
             return *waypoints(points, times=times, leg=leg, period=period), 2
 
     def _maneuver(self, node: Node) -> Target:
@@ -225,7 +227,7 @@ class ScenarioReader:
         if word in MANEUVERS:
             return *llinas_maneuver(word), 2
         given = {"rate": document.number(fields["rate"], "rate")} if "rate" in fields else {}
-        with self._blaming(fields, node):
+        with self._errors_at(fields, node):
             return *_PAPERS[word](**given), 2
 
     def _set(self, node: Node) -> Target:
@@ -280,7 +282,7 @@ class ScenarioReader:
             document.number(fields["detection"], "detection") if "detection" in fields else 1
         )
         clean = self._whole(fields["clean"], "clean", 0, MAX_SCANS) if "clean" in fields else 0
-        with self._blaming(fields, node):
+        with self._errors_at(fields, node):
             return PlotNoise(sigma, self._kind_of_noise(fields), detection, clean)  # type: ignore[arg-type]
 
     def _grid(self, node: Node, position: Array) -> Sensors:
@@ -292,14 +294,14 @@ class ScenarioReader:
         given = self._field_numbers(fields)
         if "centre" in fields:
             given["centre"] = self._numbers(fields["centre"], "centre")
-        with self._blaming(fields, node):
+        with self._errors_at(fields, node):
             return self._field(fields, node, sensor_grid(n, spacing, **given), position)
 
     def _scattered(self, node: Node, position: Array) -> Sensors:
         required = ("positions", *_FIELD_NUMBERS)
         fields = self.document.fields(node, "sensors", required, _FIELD_KEYS)
         places = self._points(fields["positions"], "positions")
-        with self._blaming({"position": fields["positions"], **fields}, node):
+        with self._errors_at({"position": fields["positions"], **fields}, node):
             field = SensorField(places, **self._field_numbers(fields))
             return self._field(fields, node, field, position)
 
@@ -315,7 +317,7 @@ class ScenarioReader:
                 f"many: {MAX_SIGHTS} pairs at most",
             )
         if not field.sees(places).any():
-            raise document.error(node, "no sensor ever has the target within its reach")
+            raise document.error(node, "no sensor has the target within its reach in any scan")
         given: dict[str, Any] = {}
         if "linear" in fields:
             given["linear"] = _TRUTH[document.choice(fields["linear"], "linear", _TRUTH)]
@@ -349,7 +351,7 @@ class ScenarioReader:
         }
         return Noise(**given)
 
-    # ---------------------------------------------------------------- questions
+    # ---------------------------------------------------------------- parts
 
     def _kind(self, node: Node, role: str, kinds: Collection[str], known: Collection[str]) -> str:
         """The single key of a mapping that tells its kind."""
@@ -368,7 +370,7 @@ class ScenarioReader:
         return found[0]
 
     @contextmanager
-    def _blaming(self, fields: Mapping[str, Node], node: Node) -> Iterator[None]:
+    def _errors_at(self, fields: Mapping[str, Node], node: Node) -> Iterator[None]:
         """Give an error of the model the place of the key that it names, else of `node`."""
         try:
             # An overflow is reported as an infinite number.

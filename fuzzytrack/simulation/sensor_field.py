@@ -29,7 +29,7 @@ class SensorField:
     Parameters
     ----------
     position : array_like, shape (n_sensors, 2)
-        Where they stand (m); at least one.
+        Positions of the sensors (m); at least one.
     reach : array_like
         Largest range at which each sees a target (m); a number, or one a sensor.
     range_sigma : array_like
@@ -92,7 +92,7 @@ class SensorField:
         Parameters
         ----------
         position : array_like, shape (..., 2)
-            Positions of the target (m); NaN is seen by none.
+            Positions of the target (m); no sensor sees NaN.
 
         Returns
         -------
@@ -135,7 +135,7 @@ class SensorField:
         linear: bool = False,
         sigma_from: str = "truth",
     ) -> Plots:
-        """Plots of one target by the whole field, those of several sensors fused.
+        """Plots of one target by the field, with those of several sensors fused.
 
         Parameters
         ----------

@@ -331,7 +331,11 @@ def test_complaints(text, expected):
         ("{waypoints: [5, 6]}", 22, "each of the waypoints must be a list, not '5'"),
         ("{waypoints: [[0], [9]], period: 1e-9}", 9, "more than 100000 scans"),
         ("{waypoints: [[0], [9]]}", 9, "the target has 2 scans; at least 3"),
-        ("{waypoints: [[0], [9]], leg: 9, times: [0, 1]}", 38, "leg says what times say already"),
+        (
+            "{waypoints: [[0], [9]], leg: 9, times: [0, 1]}",
+            38,
+            "leg and times both set the times of the points",
+        ),
         ("{waypoints: [[0], [9]], times: [0, -1]}", 40, "times must be 2 increasing numbers"),
         ("{set: mixed}", 9, "a set of targets lacks the key 'tracks'"),
         ("{set: mild, tracks: 5}", 15, "unknown set 'mild'; did you mean 'mixed'?"),
@@ -390,7 +394,7 @@ FIELD = "reach: 1000, range_sigma: 10, bearing_sigma: 1"
         (
             f"{{grid: 7, spacing: 2000, centre: [90000, 0], {FIELD}}}",
             10,
-            "no sensor ever has the target within its reach",
+            "no sensor has the target within its reach in any scan",
         ),
         (
             f"{{grid: 7, spacing: 2000, linear: perhaps, {FIELD}}}",
