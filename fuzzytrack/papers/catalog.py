@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 
 from fuzzytrack.papers.reproduction import Reproduction
+from fuzzytrack.simulation.noise import check_runs
 from fuzzytrack.tasks import Progress
 
 __all__ = ["COST", "PAPERS", "reproduce"]
@@ -49,12 +50,8 @@ def reproduce(
     """
     if name not in PAPERS:
         raise ValueError(f"name: unknown paper {name!r}; one of {', '.join(PAPERS)}")
-    if runs is not None and runs < 1:
-        raise ValueError(f"runs must be at least 1, got {runs}")
-    if seed < 0:
-        raise ValueError(f"seed must not be negative, got {seed}")
     module = importlib.import_module(f"fuzzytrack.papers.{PAPERS[name]}")
-    found: Reproduction = module.reproduce(
-        module.RUNS if runs is None else runs, seed, progress or (lambda share: None)
-    )
+    count = module.RUNS if runs is None else runs
+    check_runs(count, seed)
+    found: Reproduction = module.reproduce(count, seed, progress or (lambda share: None))
     return found

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import positive
 
-__all__ = ["WHITE", "Noise", "Plots", "noisy_plots", "streams", "truth_of_runs"]
+__all__ = ["WHITE", "Noise", "Plots", "check_runs", "noisy_plots", "streams", "truth_of_runs"]
 
 
 @dataclass(frozen=True)
@@ -115,11 +115,16 @@ def streams(seed: int, runs: int) -> list[np.random.SeedSequence]:
     ValueError
         If a number is out of range.
     """
-    if seed < 0:
-        raise ValueError(f"seed must not be negative, got {seed}")
+    check_runs(runs, seed)
+    return np.random.SeedSequence(seed).spawn(runs)
+
+
+def check_runs(runs: int, seed: int) -> None:
+    """ValueError if `runs` is less than 1 or `seed` is negative; TypeError if not whole numbers."""
     if operator.index(runs) < 1:
         raise ValueError(f"runs must be at least 1, got {runs}")
-    return np.random.SeedSequence(seed).spawn(runs)
+    if operator.index(seed) < 0:
+        raise ValueError(f"seed must not be negative, got {seed}")
 
 
 def noisy_plots(

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.recordings.ragged import Batch, batches
+from fuzzytrack.simulation.noise import check_runs
 from fuzzytrack.tasks import Progress
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
@@ -201,10 +202,7 @@ def _check(trackers: Mapping[str, Tracker], sigma: float, runs: int, seed: int) 
         raise ValueError("trackers: needs at least one")
     if not (math.isfinite(sigma) and sigma > 0):
         raise ValueError(f"sigma must be positive, got {sigma}")
-    if runs < 1:
-        raise ValueError(f"runs must be at least 1, got {runs}")
-    if seed < 0:
-        raise ValueError(f"seed must not be negative, got {seed}")
+    check_runs(runs, seed)
 
 
 def _pool(tracks: Sequence[tuple[ArrayLike, ArrayLike]]) -> tuple[Array, tuple[Batch, ...]]:

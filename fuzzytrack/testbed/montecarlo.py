@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import os
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
@@ -12,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.simulation.noise import Plots, truth_of_runs
+from fuzzytrack.simulation.noise import Plots, check_runs, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.starting import prepare_start
 from fuzzytrack.tasks import Progress, run_tasks
@@ -107,10 +106,7 @@ def monte_carlo(
     >>> results.rmse().round(1), results.rmse_se().round(1)
     (array([11.]), array([0.5]))
     """
-    if operator.index(runs) < 1:
-        raise ValueError(f"runs must be at least 1, got {runs}")
-    if operator.index(seed) < 0:
-        raise ValueError(f"seed must not be negative, got {seed}")
+    check_runs(runs, seed)
     if trackers is None:
         trackers = {name: make_tracker(name) for name in scenario.trackers}
     if not trackers:
