@@ -45,7 +45,7 @@ COMMANDS = {
         "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
     "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
-    "design": ("gains:design", "Choose gains by a rule of design, and say what they do."),
+    "design": ("design:design", "Choose gains by a rule of design, and say what they do."),
 }
 
 

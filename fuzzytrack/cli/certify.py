@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from fuzzytrack import gains as theory
@@ -13,8 +11,8 @@ from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, say, show
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.schedulers.reachable_gains import REACHES
 from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
+from fuzzytrack.schedulers.reachable_gains import sequence_steps
 
 __all__ = ["certify"]
 
@@ -24,7 +22,9 @@ def certify(
     reach: Annotated[
         str,
         typer.Option(
-            metavar="R", help=f"Gains to allow for, {' or '.join(REACHES)}: limits, or rules."
+            metavar="R",
+            help="Gains in question: universe, all within the limits of the outputs; or rules, "
+            "all between the conclusions of single rules.",
         ),
     ] = "universe",
     json: options.Json = False,
@@ -37,7 +37,7 @@ def certify(
     rules = load_rulebase(name)
     found = certify_gains(rules, reach=reach)
     refuted = len(found.sequence) > 0
-    sequence = [_step(rules, *map(float, pair)) for pair in found.sequence]
+    sequence = sequence_steps(rules, found)
     if json:
         print_json(
             {
@@ -99,12 +99,3 @@ def _reached(rules: RuleBase, reach: str) -> str:
         for output in rules.outputs
     )
     return f"within the limits of the outputs, {', '.join(limits)}"
-
-
-def _step(rules: RuleBase, alpha: float, beta: float) -> dict[str, float]:
-    """One of the gains of a sequence, and what it is as stiffness and damping."""
-    step = {"alpha": alpha, "beta": beta}
-    u = 4 - 2 * alpha - beta
-    if "stiffness" in rules.output_names and beta * u > 0:
-        step |= {"stiffness": math.sqrt(beta / u), "damping": alpha / math.sqrt(beta * u)}
-    return step | {"modulus": float(np.abs(theory.poles(alpha, beta)).max())}

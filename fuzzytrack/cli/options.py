@@ -12,6 +12,7 @@ from fuzzytrack.yamltree import suggestion
 
 __all__ = [
     "Axes",
+    "Dt",
     "Id",
     "Json",
     "Plots",
@@ -19,6 +20,7 @@ __all__ = [
     "Scenario",
     "ScenarioOrNone",
     "Seed",
+    "Sigma",
     "Sort",
     "Time",
     "load_plugins",
@@ -44,6 +46,11 @@ Seed = Annotated[int, typer.Option(min=0, help="Seed of the noise.")]
 _SCENARIO = typer.Argument(metavar="SCENARIO", help="Name of a shipped scenario, or FILE.yaml.")
 Scenario = Annotated[str, _SCENARIO]
 ScenarioOrNone = Annotated[str | None, _SCENARIO]
+Dt = Annotated[float, typer.Option("--dt", metavar="T", help="Sampling time, s.")]
+Sigma = Annotated[
+    float | None,
+    typer.Option("--sigma", metavar="S", help="Standard deviation of a measured position, m."),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 Plugins = Annotated[
     list[str] | None,

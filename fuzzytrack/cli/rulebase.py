@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import one_line
 from fuzzytrack.cli.output import print_json, print_table, say
-from fuzzytrack.cli.rulebase_tables import (
-    as_json,
-    explanation,
-    print_explanation,
-    print_rulebase,
-    review_lines,
-)
+from fuzzytrack.cli.rulebase_tables import print_explanation, print_rulebase, review_lines
 from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.as_json import rulebase_as_json
 from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path, shipped_rulebases
 from fuzzytrack.fuzzy.system import FuzzySystem
-
-if TYPE_CHECKING:
-    from fuzzytrack.schedulers.review import Review
+from fuzzytrack.schedulers.review import Review, explanation, review
 
 __all__ = ["rulebase"]
 
@@ -42,7 +35,7 @@ def list_(json: options.Json = False) -> None:
     found = [load_rulebase(name) for name in shipped_rulebases()]
     if json:
         keys = ("name", "inputs", "outputs", "scheduler", "source", "description")
-        print_json([{key: as_json(rules)[key] for key in keys} for rules in found])
+        print_json([{key: rulebase_as_json(rules)[key] for key in keys} for rules in found])
         return
     rows = [
         [
@@ -62,7 +55,7 @@ def show(name: Name, json: options.Json = False) -> None:
     """Show variables, sets and rules."""
     rules = load_rulebase(name)
     if json:
-        print_json(as_json(rules))
+        print_json(rulebase_as_json(rules))
     else:
         print_rulebase(rules)
 
@@ -74,8 +67,6 @@ def check(
     json: options.Json = False,
 ) -> None:
     """Check rule bases: what is right, or the place of the first mistake."""
-    from fuzzytrack.schedulers.review import review
-
     options.load_plugins(plugin)
     reviews: list[dict[str, Any]] = []
     wrong = False
@@ -131,7 +122,7 @@ def explain(
 @rulebase.command("set")
 def set_(
     file: Annotated[str, typer.Argument(metavar="FILE", help="The rule base.")],
-    says: Annotated[str, typer.Argument(metavar="SAYS", help="What the rule is to say: M-Z.")],
+    says: Annotated[str, typer.Argument(metavar="SAYS", help="New conclusion of the rule: M-Z.")],
     cell: Annotated[
         str, typer.Option(metavar="dE=ns,E=pl", help="The conditions of the rule, all of them.")
     ],

@@ -1,61 +1,17 @@
-"""Rule bases and their reasons, as tables and as JSON."""
+"""Rule bases, explanations and reviews as a terminal prints them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Variable
-from fuzzytrack.schedulers.gain_outputs import gains_of
 from fuzzytrack.schedulers.review import Review
 
-__all__ = ["as_json", "explanation", "print_explanation", "print_rulebase"]
-
-
-def as_json(rules: RuleBase) -> dict[str, Any]:
-    """Rule base as JSON prints it."""
-
-    def variables(role: str) -> list[dict[str, Any]]:
-        return [
-            {
-                "name": v.name,
-                "label": v.label,
-                "unit": v.unit,
-                "universe": [v.universe.low, v.universe.high, v.universe.points],
-                "grid": v.universe.grid,
-                "default": v.default,
-                "sets": {s.name: {s.shape: list(s.parameters)} for s in v.sets},
-            }
-            for v in getattr(rules, role)
-        ]
-
-    return {
-        "name": rules.name,
-        "description": rules.description,
-        "source": rules.source,
-        "inputs": variables("inputs"),
-        "outputs": variables("outputs"),
-        "operators": {
-            "and": rules.operators.conjunction,
-            "or": rules.operators.disjunction,
-            "defuzzification": rules.operators.defuzzification,
-        },
-        "rules": [_rule(rule) for rule in rules.rules],
-        "scheduler": dict(rules.scheduler),
-    }
-
-
-def _rule(rule: Rule) -> dict[str, Any]:
-    then = [
-        {"output": c.output, "set": c.set_name, "confidence": c.confidence}
-        for c in rule.consequents
-    ]
-    return {"if": dict(rule.conditions), "then": then}
+__all__ = ["print_explanation", "print_rulebase", "review_lines"]
 
 
 def print_rulebase(rules: RuleBase) -> None:
@@ -131,24 +87,8 @@ def _cell(rule: Rule, order: tuple[str, ...]) -> str:
 # -------------------------------------------------------------------- reasons
 
 
-def explanation(system: FuzzySystem, point: dict[str, float]) -> dict[str, Any]:
-    """Rules that fire at a point, outputs there, and gains behind them."""
-    values = system.evaluate(np.array([[point[name] for name in system.rules.input_names]]))
-    return {
-        "rulebase": system.rules.name,
-        "method": system.method,
-        "at": point,
-        "rules": [
-            {"number": f.number, "strength": f.strength, **_rule(f.rule)}
-            for f in system.explain(**point)
-        ],
-        "outputs": {name: float(v[0]) for name, v in values.items()},
-        "gains": {name: float(v[0]) for name, v in gains_of(values).items()},
-    }
-
-
 def print_explanation(system: FuzzySystem, found: dict[str, Any]) -> None:
-    """Print an explanation; the strongest rule first."""
+    """Print what `fuzzytrack.schedulers.review.explanation` found; the strongest rule first."""
     for name, value in found["at"].items():
         universe = system.rules.input(name).universe
         if not universe.low <= value <= universe.high:

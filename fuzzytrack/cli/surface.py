@@ -13,10 +13,9 @@ from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.schedulers.gain_outputs import gains_of
+from fuzzytrack.schedulers.review import grid_table
 
-__all__ = ["grid_table", "surface"]
-
+__all__ = ["surface"]
 
 MAX_POINTS = 1001
 
@@ -72,17 +71,6 @@ def _written(
     table = grid_table(system, points, fixed)
     write_table(csv, table)
     return table
-
-
-def grid_table(system: FuzzySystem, points: int, fixed: dict[str, float]) -> dict[str, Array]:
-    """Inputs, outputs, and gains behind the outputs, over a grid of the first two inputs."""
-    rules = system.rules
-    axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs[:2]]
-    axes += [np.array([fixed[name]]) for name in rules.input_names[2:]]
-    grid = np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
-    inputs = {name: grid[:, k] for k, name in enumerate(rules.input_names)}
-    outputs = system.evaluate(grid)
-    return inputs | outputs | gains_of(outputs)
 
 
 def _print_ranges(system: FuzzySystem, table: dict[str, Array]) -> None:

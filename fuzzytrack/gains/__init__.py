@@ -1,6 +1,7 @@
 """Theory of gains: pure functions over broadcasting arrays; they know nothing of fuzzy sets."""
 
 from fuzzytrack.gains.abc_space import abc_preimages, from_abc, to_abc
+from fuzzytrack.gains.card import gain_card
 from fuzzytrack.gains.circle import CircleOptimum, optimal_on_circle
 from fuzzytrack.gains.conventions import GAMMA_CONVENTIONS, convert_gamma
 from fuzzytrack.gains.cost import Optimum, TrackingCost
@@ -72,6 +73,7 @@ __all__ = [
     "fading_memory",
     "frequency_response",
     "from_abc",
+    "gain_card",
     "growing_memory",
     "in_closed_region",
     "is_stable",

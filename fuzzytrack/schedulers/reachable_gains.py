@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 
 import numpy as np
@@ -17,10 +18,11 @@ from fuzzytrack.gains.certificate import (
     convex_hull,
     polygon_in_gains,
 )
+from fuzzytrack.gains.stability import poles
 from fuzzytrack.gains.wdomain import bilinear
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
 
-__all__ = ["REACHES", "certify", "reachable_gains"]
+__all__ = ["REACHES", "certify", "reachable_gains", "sequence_steps"]
 
 REACHES = ("universe", "rules")
 
@@ -87,6 +89,35 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
     after a few plots, and so decides nothing about whether the error shrinks in the end.
     """
     return _gains(rules, reach)[0]
+
+
+def sequence_steps(rules: RuleBase, found: Certificate) -> list[dict[str, float]]:
+    """Steps of a sequence of gains that makes the error grow.
+
+    Parameters
+    ----------
+    rules : RuleBase
+        The rule base that was certified.
+    found : Certificate
+
+    Returns
+    -------
+    list of dict
+        For each step ``alpha`` and ``beta``; ``stiffness`` and ``damping``, if the rule base has a
+        stiffness and the gains one that is positive; and ``modulus``, that of the largest pole.
+        Empty unless refuted.
+    """
+    w_domain = "stiffness" in rules.output_names
+    return [_step(float(alpha), float(beta), w_domain) for alpha, beta in found.sequence]
+
+
+def _step(alpha: float, beta: float, w_domain: bool) -> dict[str, float]:
+    step = {"alpha": alpha, "beta": beta}
+    u = 4 - 2 * alpha - beta
+    # Also on the edge of stability, where `fuzzytrack.gains.w_from_alpha_beta` refuses.
+    if w_domain and beta * u > 0:
+        step |= {"stiffness": math.sqrt(beta / u), "damping": alpha / math.sqrt(beta * u)}
+    return step | {"modulus": float(np.abs(poles(alpha, beta)).max())}
 
 
 def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.fuzzy.as_json import rule_as_json
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
 from fuzzytrack.schedulers.gain_outputs import gains_of
 
-__all__ = ["Review", "review"]
+__all__ = ["Review", "explanation", "grid_table", "review"]
 
 # Points of the grid on which a rule base is looked at, over all inputs.
 _POINTS = 10_201
@@ -68,6 +70,54 @@ class Review:
             "table_bounds": self.table_bounds,
             "schedules": self.schedules,
         }
+
+
+def explanation(system: FuzzySystem, point: dict[str, float]) -> dict[str, Any]:
+    """Rules that fire at a point, outputs there, and gains behind them, as JSON prints it.
+
+    Parameters
+    ----------
+    system : FuzzySystem
+    point : dict of str to float
+        A value for each input.
+    """
+    values = system.evaluate(np.array([[point[name] for name in system.rules.input_names]]))
+    return {
+        "rulebase": system.rules.name,
+        "method": system.method,
+        "at": point,
+        "rules": [
+            {"number": f.number, "strength": f.strength, **rule_as_json(f.rule)}
+            for f in system.explain(**point)
+        ],
+        "outputs": {name: float(v[0]) for name, v in values.items()},
+        "gains": {name: float(v[0]) for name, v in gains_of(values).items()},
+    }
+
+
+def grid_table(system: FuzzySystem, points: int, at: Mapping[str, float]) -> dict[str, Array]:
+    """Inputs, outputs, and gains behind the outputs, over a grid of the first two inputs.
+
+    Parameters
+    ----------
+    system : FuzzySystem
+    points : int
+        Points an axis.
+    at : mapping of str to float
+        Values of the other inputs.
+
+    Returns
+    -------
+    dict of str to ndarray
+        One column each, a row for every point of the grid.
+    """
+    rules = system.rules
+    axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs[:2]]
+    axes += [np.array([at[name]]) for name in rules.input_names[2:]]
+    grid = np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
+    inputs = {name: grid[:, k] for k, name in enumerate(rules.input_names)}
+    outputs = system.evaluate(grid)
+    return inputs | outputs | gains_of(outputs)
 
 
 def review(rules: RuleBase) -> Review:

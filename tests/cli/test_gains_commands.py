@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import load_rulebase
-from fuzzytrack.cli.gain_card import card
+from fuzzytrack.gains import gain_card
 from fuzzytrack.gains.certificate import error_matrix
 from fuzzytrack.schedulers.reachable_gains import reachable_gains
 
@@ -72,10 +72,10 @@ def test_card_of_three_gains(run):
     assert "0 m behind 1 m/s², 160 m behind 1 m/s³" in text
     assert "Kalata's β is 0.1716 and γ 0.05887" in text
     assert "covariance" not in text
-    found = card(0.5, 0.4, 0.1, dt=2.0, sigma=10.0)
+    found = gain_card(0.5, 0.4, 0.1, dt=2.0, sigma=10.0)
     assert found["covariance"] is None
     assert found["noise_ratio"]["acceleration"] == pytest.approx(0.004733728 / 16)
-    assert "deviation" not in card(0.5, 0.4, 0.1)
+    assert "deviation" not in gain_card(0.5, 0.4, 0.1)
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_card_of_unstable_gains_says_why(run, gains, reason):
 
 
 def test_stable_gains_without_a_tracking_index():
-    assert card(1.2, 0.5)["tracking_index"] is None
+    assert gain_card(1.2, 0.5)["tracking_index"] is None
 
 
 def test_no_tracking_index_above_one(run):
@@ -151,7 +151,7 @@ def test_tracking_index_of_kalatas_gains(run):
         found = as_json(run, "design", "kalata", "--index", 0.327, "--order", order)
         assert found["tracking_index"] == pytest.approx(0.327)
     # As printed, with few digits.
-    assert card(0.5521, 0.2188)["tracking_index"] == pytest.approx(0.327, rel=1e-3)
+    assert gain_card(0.5521, 0.2188)["tracking_index"] == pytest.approx(0.327, rel=1e-3)
 
 
 def test_design_of_nothing_is_on_the_edge(run):
@@ -162,8 +162,9 @@ def test_design_of_nothing_is_on_the_edge(run):
     ("words", "message"),
     [
         ("gains --alpha nan --beta 1", "error: alpha must be finite, got nan"),
-        ("gains --alpha .5 --beta .7 --dt 0", "error: --dt must be > 0, got 0"),
-        ("gains --alpha .5 --beta .7 --sigma -1", "error: --sigma must be > 0, got -1"),
+        ("gains --alpha .5 --beta .7 --dt 0", "error: --dt: must be > 0, got 0"),
+        ("gains --alpha .5 --beta .7 --sigma -1", "error: --sigma: must be > 0, got -1"),
+        ("design benedict-bordner --alpha .5 --dt 0", "error: --dt: must be > 0, got 0"),
         ("gains --alpha .5", "Missing option '--beta'"),
         ("design kalata", "error: give either --index or --sigma-v"),
         ("design kalata --index 1 --sigma-v 1", "error: give either --index or --sigma-v"),
@@ -181,7 +182,7 @@ def test_design_of_nothing_is_on_the_edge(run):
         ("design optimal --sigma 0 --velocity 1", "error: sigma must be finite and > 0, got 0"),
         ("certify nowhere", "nowhere"),
         ("certify valve", "error: valve cannot be certified: needed are outputs stiffness"),
-        ("certify stiffness-damping --reach all", "error: reach: unknown 'all'; one of universe"),
+        ("certify stiffness-damping --reach all", "error: --reach: unknown 'all'; one of universe"),
     ],
 )
 def test_bad_input_is_one_line(fails, words, message):
