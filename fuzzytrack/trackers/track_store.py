@@ -12,7 +12,7 @@ from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.state import TrackState, check_rows
 
-__all__ = ["Slots", "TrackStore"]
+__all__ = ["TrackStore"]
 
 #: Numbers by which a store knows its tracks, from 0 on.
 Slots = NDArray[np.intp]
