@@ -199,7 +199,7 @@ def compare_tracks(
 
 def _check(trackers: Mapping[str, Tracker], sigma: float, runs: int, seed: int) -> None:
     if not trackers:
-        raise ValueError("trackers: needs at least one")
+        raise ValueError("trackers: at least one is needed")
     if not (math.isfinite(sigma) and sigma > 0):
         raise ValueError(f"sigma must be positive, got {sigma}")
     check_runs(runs, seed)
@@ -216,7 +216,7 @@ def _pool(tracks: Sequence[tuple[ArrayLike, ArrayLike]]) -> tuple[Array, tuple[B
             )
     widths = {truth.shape[1] for _, truth in pairs}
     if len(widths) != 1:
-        raise ValueError("tracks: needs at least one, and the same axes in all of them")
+        raise ValueError("tracks: at least one is needed, and all need the same axes")
     gap = np.full((1, *widths), np.nan)
     return np.concatenate([*(truth for _, truth in pairs), gap]), batches([t for t, _ in pairs])
 

@@ -2,7 +2,7 @@
 
 Arrays of errors have their runs and scans last, shape (..., runs, n_steps). Runs are independent
 of each other, the scans of a run are not: standard errors are those over runs, each with its own
-number of scans that count (the estimate of a ratio, to first order).
+number of scans that count (ratio estimator, by the delta method).
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class PairedDifference:
     quantity : {"predicted", "filtered", "velocity"}
         Whose errors.
     of : {"rmse", "mean"}
-        What is taken of each run: root mean square or mean distance.
+        Statistic of each run: root mean square or mean distance.
     difference : float
         Mean over runs of second minus first; negative where the second is better.
     standard_error : float
@@ -105,7 +105,7 @@ class PairedDifference:
 
     @property
     def significant(self) -> bool:
-        """Whether the interval leaves out 0."""
+        """Whether 0 is outside the interval."""
         return self.low > 0 or self.high < 0
 
 
@@ -121,8 +121,8 @@ class Consistency:
         Mean over runs and scans that count, that of a consistent filter, and the interval that
         its mean keeps.
     scan_mean, scan_low, scan_high : ndarray, shape (n_trackers, n_steps)
-        Mean over runs at each scan, whether it counts or not, and its interval; NaN where there is
-        nothing.
+        Mean over runs at each scan, whether it counts or not, and its interval; NaN where there are
+        no values.
     """
 
     level: float
@@ -297,7 +297,7 @@ def quantiles(values: ArrayLike, counts: ArrayLike, levels: ArrayLike) -> Array:
             np.take_along_axis(ordered, at[..., None, :], axis=-2)[..., 0, :]
             for at in (below, np.ceil(place).astype(np.int64))
         )
-        # Nothing is infinity: both ends are, and it takes no part.
+        # Values that do not count are infinite and sorted last; a scan of them only becomes NaN.
         step = np.subtract(high, low, out=np.zeros_like(low), where=number > 0)
         found[k] = np.where(number > 0, low + (place - below) * step, np.nan)
     return found.reshape(wanted.shape + number.shape)
@@ -363,8 +363,8 @@ def consistency(
         Which scans count.
     independent_scans : bool
         Whether a consistent filter's values at different scans of a run are independent. They are
-        for NIS. They are not for NEES: its interval is that of runs as independent as one scan
-        each, which a consistent filter keeps at least as often as `level` says.
+        for NIS. They are not for NEES: its interval counts each run as one independent value, so a
+        consistent filter stays within it at least as often as `level` says.
     level : float
         0 < level < 1.
 

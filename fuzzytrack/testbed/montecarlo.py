@@ -27,8 +27,8 @@ __all__ = ["monte_carlo"]
 
 # Coordinates a chunk may hold: a tracker makes about ten arrays of this many floats.
 _COORDINATES = 200_000
-# Runs a chunk may hold. In two axes, the lanes that compiled code takes at once; and a job of a few
-# hundred runs still keeps several cores busy.
+# Runs a chunk may hold: few enough that a job of a few hundred runs keeps several cores busy.
+# With two axes they nearly fill one block of lanes of compiled code.
 _RUNS = 124
 
 
@@ -58,11 +58,11 @@ def monte_carlo(
     progress : callable, optional
         Called with the share of the runs that are done, after every chunk of them.
     executor : concurrent.futures.Executor, optional
-        Runs the chunks; here and now unless given. A process pool, or a Dask cluster through
+        Runs the chunks; in this process unless given. A process pool, or a Dask cluster through
         ``client.get_executor()``. Scenario and trackers are pickled to it.
     folder : str or path, optional
-        Keeps finished chunks below its ``chunks``, so that a job that was interrupted can go on;
-        made if it does not exist.
+        Where finished chunks are kept, in its subfolder ``chunks``, so that an interrupted job can
+        be continued; made if it does not exist.
     resume : bool
         Whether to continue the job whose chunks `folder` holds, if any. More runs, or fewer, may
         be asked for than before.
@@ -75,7 +75,7 @@ def monte_carlo(
     ------
     ValueError
         If there is no tracker or no such tracker, `runs` or `seed` is out of range, `folder` holds
-        chunks and `resume` is False, or they are of another job: says in what it differs.
+        chunks and `resume` is False, or they are of another job; names the difference.
     OSError
         If `folder` cannot be written to.
 
@@ -110,7 +110,7 @@ def monte_carlo(
     if trackers is None:
         trackers = {name: make_tracker(name) for name in scenario.trackers}
     if not trackers:
-        raise ValueError("trackers: needs at least one")
+        raise ValueError("trackers: at least one is needed")
     trackers = dict(trackers)
     size = _chunk_runs(scenario)
     chunks = [range(first, min(first + size, runs)) for first in range(0, runs, size)]

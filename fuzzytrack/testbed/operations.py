@@ -3,8 +3,8 @@
 The convention is that of MATLAB 5, in which Llinas et al. (1998) counted their Table 5.7: an
 addition, subtraction, multiplication, division or power is one operation, and so is a square root
 or another elementary function. A comparison, a choice, a change of sign, an absolute value, a
-rounding and an assignment are none, unless a `Tally` is told to count them. Arithmetic on numbers
-that count is counted also where it serves an index; arithmetic on plain integers never is.
+rounding and an assignment are not counted, unless a `Tally` is told to count them. Arithmetic on
+counted numbers is counted even if the result is an index; arithmetic on plain integers is not.
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["Counted", "OperationCount", "Tally", "count_operations", "count_program"]
 
-_SCHEDULER, _RECURSION = "scheduler", "recursion"
 _PERIOD, _SIGMA = 60.0, 115.0
 
 
@@ -54,8 +53,8 @@ class Tally:
 class Counted:
     """A number that reports every operation on it to a `Tally`; made by `Tally.number`.
 
-    Results are counted numbers again; of a comparison they are plain. It serves as an index where
-    it is whole.
+    Results of arithmetic are counted numbers again, those of comparisons are plain. A counted
+    number that is whole can be an index.
     """
 
     __slots__ = ("tally", "value")
@@ -157,8 +156,8 @@ def count_program(program: Callable[..., Any], *arguments: Any, **options: Any) 
     Parameters
     ----------
     program : callable
-        Function that takes, beside its arguments, ``number``: a function of a number through which
-        it passes whatever it calculates with.
+        Function that takes, beside its arguments, ``number``: a function that makes a counted
+        number of each number that the program calculates with.
     *arguments, **options
         Its other arguments.
 
@@ -193,7 +192,7 @@ class OperationCount:
     Attributes
     ----------
     scheduler, recursion : int
-        Operations of the gains and of all else, over all scans and axes.
+        Operations of the scheduler and of everything else, over all scans and axes.
     scheduler_per_update, recursion_per_update : float
         Their mean for one axis at one corrected scan; NaN where there was none.
     """
@@ -222,7 +221,7 @@ def count_operations(
     Parameters
     ----------
     tracker : LaneTracker or GainScheduler
-        A scheduler stands for an `fuzzytrack.AlphaBetaTracker` with it.
+        A scheduler is counted in a `fuzzytrack.AlphaBetaTracker`.
     scans : int
         Number of scans, at least 1; none is missed.
     n_axes : int
@@ -235,18 +234,17 @@ def count_operations(
     Raises
     ------
     TypeError
-        If `tracker` is neither.
+        If `tracker` is of another type.
     ValueError
         If a number is less than 1.
 
     Notes
     -----
-    The functions are those of the plain path of the runner, rebuilt so that all their constants
-    count. Only what is executed is counted, not the other side of a select. The recursion serves
-    all trackers alike, so it does more than Eqs. 2.1 to 2.3 of Llinas et al. (1998) ask for: an
-    acceleration also where γ = 0, the time since the last plot, and the number of plots. Where a
-    path depends on the data, it is that of a noisy straight track, with scans 60 s apart and noise
-    of 115 m.
+    The functions are those that run in plain Python, copied with constants that count. Only what is
+    executed is counted, not the other side of a select. The recursion is the same for all trackers,
+    so it does more than Eqs. 2.1 to 2.3 of Llinas et al. (1998): an acceleration even if γ = 0, the
+    time since the last plot, and the number of plots. Where the path through the functions depends
+    on the data, it is that of a noisy straight track, with scans 60 s apart and noise of 115 m.
 
     Examples
     --------
@@ -314,7 +312,7 @@ def _counting(
 ) -> Callable[..., Any]:
     """The function and all functions that it calls, with constants and `math` that count.
 
-    What the function with the code `kernel` spends is added to `inside` as well.
+    Operations of the function with the code `kernel` are added to `inside` as well.
     """
     known: dict[int, Any] = {}
     namespace = SimpleNamespace(**{n: _elementary(v, tally) for n, v in vars(math).items()})
@@ -358,7 +356,7 @@ def _counting(
 def _elementary(value: Any, tally: Tally) -> Any:
     """A function of `math` that counts as one operation; its constants and anything else unchanged.
 
-    What asks or rounds is free.
+    Questions such as `math.isnan`, and rounding, are not counted.
     """
     free = (math.isnan, math.isinf, math.isfinite, math.floor, math.ceil, math.trunc)
     if getattr(value, "__module__", None) != "math" or not callable(value):

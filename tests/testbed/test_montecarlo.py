@@ -389,8 +389,8 @@ def test_killed_and_resumed(tmp_path, monkeypatch):
     [
         ({"runs": 0}, "runs must be at least 1, got 0"),
         ({"seed": -1}, "seed must not be negative, got -1"),
-        ({"trackers": {}}, "trackers: needs at least one"),
-        ({"trackers": None}, "trackers: needs at least one"),
+        ({"trackers": {}}, "trackers: at least one is needed"),
+        ({"trackers": None}, "trackers: at least one is needed"),
     ],
 )
 def test_mistakes(changes, complaint):
