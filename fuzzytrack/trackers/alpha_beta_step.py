@@ -25,49 +25,11 @@ from fuzzytrack.kernels.compile import (
     use_wide_vectors,
 )
 from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.start import axis_end, begin_step, lane_end, velocity_before
+from fuzzytrack.lanes.tuples import gather, scatter
 from fuzzytrack.schedulers.base import GainScheduler
 
 __all__ = ["steady_function", "step_function"]
-
-
-def _gather(count: int, stride: int) -> Callable[[Any, int], tuple[float, ...]]:
-    """Function that reads `count` numbers, `stride` apart, into a tuple.
-
-    Grown one by one, since compiled code cannot fill a tuple in a loop.
-    """
-    if count == 0:
-
-        def nothing(buffer: Any, start: int) -> tuple[float, ...]:
-            return ()
-
-        return nothing
-
-    before = _gather(count - 1, stride)
-    offset = (count - 1) * stride
-
-    def one_more(buffer: Any, start: int) -> tuple[float, ...]:
-        return (*before(buffer, start), buffer[start + offset])
-
-    return one_more
-
-
-def _scatter(count: int, stride: int) -> Callable[[Any, int, tuple[float, ...], bool], None]:
-    """Function that writes a tuple to places `stride` apart, or leaves them as they are."""
-    if count == 0:
-
-        def nothing(buffer: Any, start: int, values: tuple[float, ...], write: bool) -> None:
-            return
-
-        return nothing
-
-    before = _scatter(count - 1, stride)
-    last, offset = count - 1, (count - 1) * stride
-
-    def one_more(buffer: Any, start: int, values: tuple[float, ...], write: bool) -> None:
-        before(buffer, start, values, write)
-        buffer[start + offset] = values[last] if write else buffer[start + offset]
-
-    return one_more
 
 
 def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., Any]:
@@ -92,7 +54,7 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
 
         return alone
 
-    axes = _gather(n_axes, 1)
+    axes = gather(n_axes, 1)
 
     def together(
         b: Any, i: int, own: Any, dt: float, update: bool, told: bool, memory: Any
@@ -113,37 +75,35 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
 def _advance(
     scheduler: GainScheduler, rows: Rows, two_point: bool, stride: int, settled: bool, results: bool
 ) -> Callable[[Any, int, Any, float, float], None]:
-    """Function that takes lane `i` a step of length `dt` on, after so many plots.
+    """Function that takes lane `i` one step of length `dt` on, after so many plots.
 
-    `own` are numbers of the lane for this step: plots, predictions, innovations, and room for what
-    a coupled kernel is given, each of all axes.
+    `own` are numbers of the lane for this step: plots, predictions, innovations, and room for the
+    arguments of a coupled kernel, each of all axes.
     """
     n_axes, n_memory = rows.n_axes, rows.n_memory
     call = _caller(scheduler, rows, stride)
-    remembered, remember = _gather(n_memory, stride), _scatter(n_memory, stride)
-    nan = math.nan
-    x_row, v_row, a_row, last_row, gap_row, plots_row, memory_row = (
+    remembered, remember = gather(n_memory, stride), scatter(n_memory, stride)
+    end_axis = axis_end(rows, stride, results=results)
+    # While a track is running nobody asks for the time since its last plot.
+    end_lane = lane_end(
+        rows, stride, two_point=two_point, keep_gap=False, settled=settled, results=results
+    )
+    x_row, v_row, a_row, last_row, gap_row, memory_row = (
         row * stride
         for row in (
-            rows.position, rows.velocity, rows.acceleration, rows.last_plot, rows.gap, rows.plots,
-            rows.memory,
+            rows.position, rows.velocity, rows.acceleration, rows.last_plot, rows.gap, rows.memory
         )
     )  # fmt: skip
-    prediction_row, innovation_row, gains_row = (
-        row * stride for row in (rows.predicted, rows.innovation, rows.gains)
-    )
-    first_count = 1.0 if two_point else 2.0
     every_step = scheduler.sees_every_step
     accelerating = scheduler.uses_acceleration
 
     def advance(b: Any, i: int, own: Any, dt: float, plots: float) -> None:
-        rate = 1.0 / dt
         seen = True
         for j in range(n_axes):
             z = own[j]
             seen = seen & (z == z)
-        running = plots >= 2.0
-        update = seen & running
+        dt, gap, running, update = begin_step(plots, b[gap_row + i], dt, seen)
+        rate = 1.0 / dt
         # A plot that the kernel is told of, and a step after which its memory is kept.
         told = update | (seen & every_step)
         kept = told | ((plots > 0.0) & every_step)
@@ -158,39 +118,24 @@ def _advance(
 
         memory = remembered(b, memory_row + i)
         alpha, beta, gamma, phi, memory = call(b, i, own, dt, update, told, memory)
-        gap = b[gap_row + i] + dt
 
         for j in range(n_axes):
             at = j * stride + i
-            last, moved = b[last_row + at], b[v_row + at]
+            last, v = b[last_row + at], b[v_row + at]
             z, prediction, e = own[j], own[n_axes + j], own[2 * n_axes + j]
             if accelerating:
                 a = b[a_row + at]
-                moved = moved + a * dt
+                v = v + a * dt
                 a_new = phi * (a + (gamma * (0.5 * rate * rate)) * e) if running else 0.0
                 b[a_row + at] = a_new if seen else a
             elif not settled:
                 b[a_row + at] = 0.0
-            start = (z - last) / gap if plots == 1.0 else 0.0
-            x_new = prediction + alpha * e if running else z
-            v_new = moved + (beta * rate) * e if running else start
-            b[x_row + at] = x_new if seen else prediction
-            b[v_row + at] = v_new if seen else moved
-            b[last_row + at] = z if seen else last
-            if results:
-                b[prediction_row + at] = prediction if running else nan
-                b[innovation_row + at] = e if update else nan
+            v = velocity_before(plots, v, z, last, gap, seen)
+            b[v_row + at] = v + (beta * rate) * e if update else v
+            end_axis(b, at, z, last, prediction, prediction + alpha * e, e, seen, running)
 
         remember(b, memory_row + i, memory, kept)
-        if not settled:
-            counted = plots + 1.0 if plots > 0.0 else first_count
-            counted = counted if counted < 2.0 else 2.0
-            b[plots_row + i] = counted if seen else plots
-            b[gap_row + i] = 0.0 if seen | running else gap
-        if results:
-            b[gains_row + i] = alpha if update else nan
-            b[gains_row + stride + i] = beta if update else nan
-            b[gains_row + 2 * stride + i] = gamma if update else nan
+        end_lane(b, i, plots, gap, seen, alpha, beta, gamma)
 
     return advance
 
@@ -237,9 +182,7 @@ def step_function(
         # The compiler sees that no row runs into the next, and works on several lanes at once.
         for i in range(min(count, stride)):
             _take(own, n_axes, b, plot_row + i, stride)
-            dt = b[dt_row + i]
-            # The first step of a track has no length; its value is not used.
-            advance(b, i, own, dt if dt > 0.0 else 1.0, b[plots_row + i])
+            advance(b, i, own, b[dt_row + i], b[plots_row + i])
 
     return step
 

@@ -15,6 +15,7 @@ from fuzzytrack.gains import design
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
+from fuzzytrack.lanes.start import single_axis_step
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.state import TrackState
@@ -169,45 +170,17 @@ def _step(bank: ParallelBank, rows: Rows, stride: int) -> Callable[[Any, int], N
     advance = _members(bank, rows, stride)
     choose = (_mixture if bank.selection == "soft" else _best)(bank, rows, stride)
     hindsight = not bank.causal
-    nan = math.nan
-    x_row, v_row, last_row, gap_row = rows.position, rows.velocity, rows.last_plot, rows.gap
-    plots_row, prediction_row, innovation_row = rows.plots, rows.predicted, rows.innovation
-    gains_row, plot_row, sigma_row, dt_row = rows.gains, rows.plot, rows.sigma, rows.dt
 
-    def step(b: Any, count: int) -> None:
-        for i in range(min(count, stride)):
-            dt = b[dt_row * stride + i]
-            # The first step of a track has no length; its value is not used.
-            dt = dt if dt > 0.0 else 1.0
-            gap = b[gap_row * stride + i] + dt
-            plots = b[plots_row * stride + i]
-            z = b[plot_row * stride + i]
-            seen = z == z
-            running = plots >= 2.0
-            update = seen & running
-            starts = seen & (plots == 1.0)
-            sigma = b[sigma_row * stride + i] if update else 1.0
-            v = b[v_row * stride + i]
-            prediction = b[x_row * stride + i] + v * dt
-            v = (z - b[last_row * stride + i]) / gap if starts else v
+    def correct(
+        b: Any, i: int, z: float, prediction: float, v: float, dt: float, gap: float, sigma: float,
+        update: bool, starts: bool,
+    ) -> tuple[float, float, float, float, float]:  # fmt: skip
+        least, nearest = advance(b, i, z, v, dt, sigma, update, starts)
+        x_chosen, v_chosen, alpha, beta = choose(b, i, least)
+        prediction = nearest if update & hindsight else prediction
+        return prediction, x_chosen, v_chosen if update else v, alpha, beta
 
-            least, nearest = advance(b, i, z, v, dt, sigma, update, starts)
-            x_chosen, v_chosen, alpha, beta = choose(b, i, least)
-
-            prediction = nearest if update & hindsight else prediction
-            b[x_row * stride + i] = (x_chosen if running else z) if seen else prediction
-            b[v_row * stride + i] = v_chosen if update else v
-            b[last_row * stride + i] = z if seen else b[last_row * stride + i]
-            counted = plots + 1.0 if plots < 2.0 else 2.0
-            b[plots_row * stride + i] = counted if seen else plots
-            b[gap_row * stride + i] = 0.0 if seen else gap
-            b[prediction_row * stride + i] = prediction if running else nan
-            b[innovation_row * stride + i] = z - prediction if update else nan
-            b[gains_row * stride + i] = alpha if update else nan
-            b[(gains_row + 1) * stride + i] = beta if update else nan
-            b[(gains_row + 2) * stride + i] = 0.0 if update else nan
-
-    return step
+    return single_axis_step(rows, stride, correct)
 
 
 def _members(bank: ParallelBank, rows: Rows, stride: int) -> Callable[..., tuple[float, float]]:

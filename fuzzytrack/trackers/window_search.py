@@ -14,6 +14,7 @@ from fuzzytrack.gains import design
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
+from fuzzytrack.lanes.start import single_axis_step
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
@@ -101,51 +102,24 @@ def _step(tracker: WindowSearch, rows: Rows, stride: int) -> Callable[[Any, int]
     count_row, alpha_row = rows.memory + 5 * window, rows.memory + 5 * window + 1
     remember, search = _remember(rows.memory, window, stride), _search(tracker, rows.memory, stride)
     full = float(window)
-    nan = math.nan
-    x_row, v_row, last_row, gap_row = rows.position, rows.velocity, rows.last_plot, rows.gap
-    plots_row, prediction_row, innovation_row = rows.plots, rows.predicted, rows.innovation
-    gains_row, plot_row, dt_row = rows.gains, rows.plot, rows.dt
 
-    def step(b: Any, count: int) -> None:
-        for i in range(min(count, stride)):
-            dt = b[dt_row * stride + i]
-            # The first step of a track has no length; its value is not used.
-            dt = dt if dt > 0.0 else 1.0
-            gap = b[gap_row * stride + i] + dt
-            plots = b[plots_row * stride + i]
-            z = b[plot_row * stride + i]
-            seen = z == z
-            running = plots >= 2.0
-            update = seen & running
-            last, v = b[last_row * stride + i], b[v_row * stride + i]
-            prediction = b[x_row * stride + i] + v * dt
-            e = z - prediction if update else 0.0
-            alpha = b[alpha_row * stride + i]
-            beta = alpha * alpha / (2.0 - alpha)
+    def correct(
+        b: Any, i: int, z: float, prediction: float, v: float, dt: float, gap: float, sigma: float,
+        update: bool, starts: bool,
+    ) -> tuple[float, float, float, float, float]:  # fmt: skip
+        e = z - prediction if update else 0.0
+        alpha = b[alpha_row * stride + i]
+        beta = alpha * alpha / (2.0 - alpha)
+        if update:
+            remember(b, i, z, gap, dt, prediction, v)
+            held = b[count_row * stride + i] + 1.0
+            held = held if held < full else full
+            b[count_row * stride + i] = held
+            if held == full:
+                b[alpha_row * stride + i] = search(b, i, alpha)
+        return prediction, prediction + alpha * e, v + (beta * (1.0 / dt)) * e, alpha, beta
 
-            if update:
-                remember(b, i, z, gap, dt, prediction, v)
-                held = b[count_row * stride + i] + 1.0
-                held = held if held < full else full
-                b[count_row * stride + i] = held
-                if held == full:
-                    b[alpha_row * stride + i] = search(b, i, alpha)
-
-            v = (z - last) / gap if seen & (plots == 1.0) else v
-            x = prediction + alpha * e if running else z
-            b[x_row * stride + i] = x if seen else prediction
-            b[v_row * stride + i] = v + (beta * (1.0 / dt)) * e
-            b[last_row * stride + i] = z if seen else last
-            counted = plots + 1.0 if plots < 2.0 else 2.0
-            b[plots_row * stride + i] = counted if seen else plots
-            b[gap_row * stride + i] = 0.0 if seen else gap
-            b[prediction_row * stride + i] = prediction if running else nan
-            b[innovation_row * stride + i] = e if update else nan
-            b[gains_row * stride + i] = alpha if update else nan
-            b[(gains_row + 1) * stride + i] = beta if update else nan
-            b[(gains_row + 2) * stride + i] = 0.0 if update else nan
-
-    return step
+    return single_axis_step(rows, stride, correct)
 
 
 def _remember(first_row: int, window: int, stride: int) -> Callable[..., None]:
