@@ -63,6 +63,12 @@ class Shipped:
             )
         return self._directory() / f"{name_or_path}.yaml"
 
+    def spelled(self, name_or_path: PathOrName) -> str:
+        """Name or path as a text that `path` reads the same way."""
+        text = os.fspath(name_or_path)
+        is_name = isinstance(name_or_path, str) or _is_path(text)
+        return text if is_name else os.path.join(os.curdir, text)
+
     def document(self, name_or_path: PathOrName) -> Document:
         """Document of a shipped file by name, or of the file at a path.
 

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.reprs import constructor_code
 
 __all__ = ["FUZZIFICATIONS", "Fuzzification"]
 
 FUZZIFICATIONS = ("singleton", "gaussian", "triangular")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fuzzification:
     """How a crisp input becomes a fuzzy one.
 
@@ -47,6 +48,9 @@ class Fuzzification:
                 "fuzzification: width goes with gaussian and triangular, and only there; "
                 f"got shape={self.shape!r}, width={self.width}"
             )
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
 
     @property
     def is_singleton(self) -> bool:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.reader import Reader
-from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.rulebase import RuleBase, remember_origin
 from fuzzytrack.shipped import Shipped
 from fuzzytrack.yamltree import Document
 
@@ -66,7 +66,8 @@ def load_rulebase(name_or_path: str | os.PathLike[str]) -> RuleBase:
     RuleBaseError
         If there is no such name, or the file cannot be read, or is no rule base.
     """
-    return Reader(_SHIPPED.document(name_or_path)).rulebase()
+    rules = Reader(_SHIPPED.document(name_or_path)).rulebase()
+    return remember_origin(rules, _SHIPPED.spelled(name_or_path))
 
 
 def shipped_rulebases() -> tuple[str, ...]:

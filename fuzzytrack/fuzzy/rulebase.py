@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.reprs import shown
 
 __all__ = ["DEFUZZIFICATIONS", "Consequent", "Operators", "Rule", "RuleBase", "TableLayout"]
 
@@ -116,7 +118,7 @@ class TableLayout:
     cells: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RuleBase:
     """A complete, consistent rule base.
 
@@ -143,6 +145,13 @@ class RuleBase:
     ------
     RuleBaseError
         If the parts do not fit; names the offending word and the allowed ones.
+
+    Notes
+    -----
+    The `repr` of a rule base that was loaded by name or from a file is code that loads it again. Of
+    any other it is a summary in angle brackets, which is no code; its text, with which
+    `fuzzytrack.fuzzy.loading.loads_rulebase` makes an equal one, is that of
+    `fuzzytrack.fuzzy.saving.dumps_rulebase`.
     """
 
     name: str
@@ -154,6 +163,10 @@ class RuleBase:
     description: str = ""
     scheduler: tuple[tuple[str, str], ...] = ()
     layout: TableLayout | None = None
+
+    # What `load_rulebase` was given. No field: a changed copy does not come from there, and equal
+    # rule bases are equal wherever they come from.
+    _origin: ClassVar[str | None] = None
 
     def __post_init__(self) -> None:
         for name in ("inputs", "outputs", "rules", "scheduler"):
@@ -172,6 +185,12 @@ class RuleBase:
         for output in self.outputs:
             if not any(c.output == output.name for rule in self.rules for c in rule.consequents):
                 raise RuleBaseError(f"no rule concludes about output {output.name!r}")
+
+    def __repr__(self) -> str:
+        if self._origin is not None:
+            return f"load_rulebase({shown(self._origin)})"
+        variables = f"{', '.join(self.input_names)} -> {', '.join(self.output_names)}"
+        return f"<RuleBase {shown(self.name)}: {variables}; {len(self.rules)} rules>"
 
     def __hash__(self) -> int:
         # Schedulers are looked up by their rules at every step; hashing all parts would take
@@ -261,6 +280,12 @@ class RuleBase:
     def uncovered(self, name: str) -> Iterator[tuple[float, float]]:
         """Stretches of an input, as (low, high), where every membership is zero."""
         return self.input(name).uncovered()
+
+
+def remember_origin(rules: RuleBase, name_or_path: str) -> RuleBase:
+    """The rule base, which from now on says that it was loaded by a name or from a path."""
+    object.__setattr__(rules, "_origin", name_or_path)
+    return rules
 
 
 def _named(variables: tuple[Variable, ...], name: str, role: str) -> Variable:

@@ -19,6 +19,7 @@ from fuzzytrack.fuzzy.inference import conjoin as _conjoin
 from fuzzytrack.fuzzy.relation import compose, relation
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.table import InterpolationTable, build_table, default_nodes
+from fuzzytrack.reprs import call
 
 __all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
 
@@ -119,7 +120,14 @@ class FuzzySystem:
             _ = self._table
 
     def __repr__(self) -> str:
-        return f"FuzzySystem({self.rules.name!r}, method={self.method!r})"
+        options: dict[str, object] = {}
+        if self.method != "exact":
+            options["method"] = self.method
+        if not self.fuzzification.is_singleton:
+            options["fuzzification"] = self.fuzzification
+        if self.table_nodes != default_nodes(len(self.rules.inputs)):
+            options["table_nodes"] = self.table_nodes
+        return call("FuzzySystem", [self.rules], options)
 
     # ---------------------------------------------------------------- evaluation
 

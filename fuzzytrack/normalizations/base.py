@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from fuzzytrack.kernels.language import Memory
 from fuzzytrack.plugins import Registry
+from fuzzytrack.reprs import constructor_code
 
 __all__ = ["Feedback", "Normalization", "Normalize", "normalizations"]
 
@@ -67,6 +68,9 @@ class Normalization(ABC):
         See `fuzzytrack.schedulers.base.GainScheduler.prediction_variance`.
         """
         return math.nan
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
 
 
 normalizations: Registry[type[Normalization]] = Registry(

@@ -25,7 +25,7 @@ def relative(part: float, whole: float) -> float:
 
 
 @normalizations.register("chan")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Chan(Normalization):
     """Chan's normalisation with absolute denominators, axis by axis.
 
@@ -68,7 +68,7 @@ def relative_signed(part: float, whole: float) -> float:
 
 
 @normalizations.register("chan-signed")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ChanSigned(Normalization):
     """Chan's normalisation as the report prints it, with signed denominators.
 
@@ -129,7 +129,7 @@ def _sum_of_squares(n_axes: int) -> Squares:
 
 
 @normalizations.register("chan-magnitude")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ChanMagnitude(Normalization):
     """Root mean square of Chan's normalised errors over the axes of a track.
 

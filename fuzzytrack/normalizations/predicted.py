@@ -16,7 +16,7 @@ __all__ = ["Predicted"]
 
 
 @normalizations.register("predicted")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Predicted(Normalization):
     """Innovation over the standard deviation that noise alone gives it, and its change.
 

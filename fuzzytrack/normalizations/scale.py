@@ -12,7 +12,7 @@ __all__ = ["Scale"]
 
 
 @normalizations.register("scale")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scale(Normalization):
     """Innovation over the standard deviation of the plot, and its change since the last update.
 

@@ -22,7 +22,7 @@ def _check_rho(rho: float) -> float:
 
 
 @normalizations.register("smoothed")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Smoothed(Normalization):
     """Exponentially smoothed innovation over the standard deviation of the plot, axis by axis.
 
@@ -97,7 +97,7 @@ def _sum_of_smoothed(n_axes: int, rho: float) -> Squares:
 
 
 @normalizations.register("smoothed-magnitude")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SmoothedMagnitude(Normalization):
     """Root mean square of the smoothed scaled innovations over the axes of a track.
 

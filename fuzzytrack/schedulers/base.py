@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from fuzzytrack.kernels.language import Memory
 from fuzzytrack.plugins import Registry
+from fuzzytrack.reprs import constructor_code
 
 __all__ = ["GainScheduler", "Kernel", "Memory", "schedulers"]
 
@@ -114,6 +115,9 @@ class GainScheduler(ABC):
             scheduler (n_axes, lanes); NaN where it is not known yet.
         """
         return math.nan
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
 
 
 schedulers: Registry[type[GainScheduler]] = Registry(

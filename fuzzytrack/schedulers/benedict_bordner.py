@@ -12,7 +12,7 @@ __all__ = ["BenedictBordner"]
 
 
 @schedulers.register("benedict-bordner")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BenedictBordner(GainScheduler):
     """Fixed gains with β = α²/(2 - α): method M1 of Al-Wagih & Abdulla.
 

@@ -14,7 +14,7 @@ CONVENTIONS = ("mahafza", "njonjo")
 
 
 @schedulers.register("fading-memory")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FadingMemory(GainScheduler):
     """Fixed gains of the α-β-γ filter that forgets old plots by a factor of ξ a step.
 

@@ -12,7 +12,7 @@ __all__ = ["FixedGains"]
 
 
 @schedulers.register("fixed")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FixedGains(GainScheduler):
     """The same gains at every update.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,6 +13,7 @@ import numpy as np
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.kernel import infer_function
+from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
@@ -25,19 +27,20 @@ __all__ = ["FuzzyScheduler"]
 
 
 @schedulers.register("fuzzy")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FuzzyScheduler(GainScheduler):
     """Schedules gains by a rule base.
 
     Parameters
     ----------
-    rules : RuleBase
-        Its outputs are ``stiffness`` and ``damping`` (gains through the w-domain, always stable),
-        or ``stiffness`` alone (damping on Kalata's curve, ζ² = 1/2 + ω₀²/4), or ``alpha`` and
-        ``beta``, or ``alpha``, ``beta`` and ``gamma`` (gains themselves). Its scheduler settings
-        say which of them, ``gains: w-domain``, ``kalata`` or ``direct``; which ``normalization``
-        feeds its inputs, and, as further keys, the numbers that this takes (``rho: 0.8``); and, if
-        they say ``opening: growing-memory``, the gains of a new track are those of a line fitted
+    rules : RuleBase, str or path
+        A rule base; or the name of a shipped one or the path of a file, as for
+        `fuzzytrack.load_rulebase`. Its outputs are ``stiffness`` and ``damping`` (gains through the
+        w-domain, always stable); or ``stiffness`` alone (damping on Kalata's curve,
+        ζ² = 1/2 + ω₀²/4); or ``alpha``, ``beta`` and maybe ``gamma`` (the gains themselves). Its
+        scheduler settings name which: ``gains: w-domain``, ``kalata`` or ``direct``. They also name
+        the ``normalization`` that makes its inputs, with the numbers that this takes
+        (``rho: 0.8``). With ``opening: growing-memory`` a new track has the gains of a line fitted
         to all its plots, as long as their α is larger than that of the rules.
     method : {"exact", "relation", "table"}
         As for `fuzzytrack.fuzzy.system.FuzzySystem`.
@@ -45,8 +48,10 @@ class FuzzyScheduler(GainScheduler):
     Raises
     ------
     RuleBaseError
-        If a setting is missing or unknown, outputs and settings do not fit, there are more inputs
-        than signals, or the outputs reach unstable gains.
+        If there is no such rule base; if a setting is missing or unknown, outputs and settings do
+        not fit, there are more inputs than signals, or the outputs reach unstable gains.
+    TypeError
+        If `rules` is something else.
     ValueError
         If the method cannot be used with the rule base.
 
@@ -62,8 +67,17 @@ class FuzzyScheduler(GainScheduler):
     method: str = "exact"
     settings: SchedulerSettings = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "settings", read_settings(self.rules))
+    def __init__(self, rules: RuleBase | str | os.PathLike[str], method: str = "exact") -> None:
+        if isinstance(rules, str | os.PathLike):
+            rules = load_rulebase(rules)
+        if not isinstance(rules, RuleBase):
+            raise TypeError(
+                "rules must be a RuleBase, the name of a shipped one or the path of a file, "
+                f"got {type(rules).__name__}"
+            )
+        object.__setattr__(self, "rules", rules)
+        object.__setattr__(self, "method", method)
+        object.__setattr__(self, "settings", read_settings(rules))
         _check_range(self.rules)
         _never_silent(self.rules, self.system)
         # Made here, since not every rule base can be compiled.

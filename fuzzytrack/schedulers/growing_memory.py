@@ -29,7 +29,7 @@ def checked_limit(limit: float | None) -> float | None:
 
 
 @schedulers.register("growing-memory")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class GrowingMemory(GainScheduler):
     """Line fitted to all plots so far by least squares: method M2 of Al-Wagih & Abdulla.
 

@@ -28,7 +28,7 @@ def kalata_gains(index: float) -> tuple[float, float]:
 
 
 @schedulers.register("innovation")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class InnovationScheduler(GainScheduler):
     """Gains from the mean square of the last innovations, after Kim & Lee.
 

@@ -16,7 +16,7 @@ __all__ = ["KalmanCA"]
 
 
 @schedulers.register("kalman-ca")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KalmanCA(GainScheduler):
     """Kalman filter of each axis for a target of nearly constant acceleration.
 

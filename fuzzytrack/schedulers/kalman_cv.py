@@ -29,7 +29,7 @@ def check_parameters(
 
 
 @schedulers.register("kalman-cv")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class KalmanCV(GainScheduler):
     """Kalman filter of each axis for a target of nearly constant velocity.
 

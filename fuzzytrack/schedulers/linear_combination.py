@@ -14,7 +14,7 @@ __all__ = ["LinearCombination"]
 
 
 @schedulers.register("linear-combination")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LinearCombination(GainScheduler):
     """α of growing memory, β between growing memory and fixed: M3 of Al-Wagih & Abdulla.
 

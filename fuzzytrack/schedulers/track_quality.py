@@ -22,7 +22,7 @@ def quality_gains(quality: float) -> tuple[float, float]:
 
 
 @schedulers.register("track-quality")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class QualityGains(GainScheduler):
     """Gains from the quality factor N of a track, as Zhang & Jiang track vessels.
 
@@ -55,7 +55,7 @@ class QualityGains(GainScheduler):
     --------
     >>> from fuzzytrack.schedulers.track_quality import QualityGains
     >>> QualityGains.as_published()
-    QualityGains(cap=30.0, drop=3.0)
+    QualityGains(cap=30.0)
     """
 
     source: ClassVar[str] = "Zhang & Jiang, quality factor; cap 10 (published: 30)"

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
+from fuzzytrack.reprs import constructor_code
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta_step import steady_function, step_function
 from fuzzytrack.trackers.base import trackers
@@ -18,7 +19,7 @@ STARTS = ("two-point", "one-point")
 
 
 @trackers.register("alpha-beta")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AlphaBetaTracker(LaneTracker):
     """An α-β(-γ) tracker whose gains a scheduler chooses.
 
@@ -66,6 +67,9 @@ class AlphaBetaTracker(LaneTracker):
             raise ValueError(f"start: unknown {start!r}; one of {', '.join(STARTS)}")
         object.__setattr__(self, "scheduler", scheduler)
         object.__setattr__(self, "start_mode", start)
+
+    def __repr__(self) -> str:
+        return constructor_code(self, start_mode="start")
 
     @property
     def coupled(self) -> bool:  # type: ignore[override]

@@ -29,7 +29,7 @@ _WORST = 1e300
 
 
 @trackers.register("bank")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ParallelBank(LaneTracker):
     """Fixed α-β filters in parallel on each axis: method M5 of Al-Wagih & Abdulla, and causal ones.
 

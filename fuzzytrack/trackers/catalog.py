@@ -108,7 +108,7 @@ def make_tracker(spec: str) -> Tracker:
     --------
     >>> from fuzzytrack.trackers.catalog import make_tracker
     >>> make_tracker("fixed:alpha=0.5:beta=0.2").scheduler
-    FixedGains(alpha=0.5, beta=0.2, gamma=0.0)
+    FixedGains(0.5, 0.2)
     >>> make_tracker("stiffness-damping:method=relation:start=one-point").start_mode
     'one-point'
     """

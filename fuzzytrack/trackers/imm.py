@@ -30,7 +30,7 @@ MANEUVERS = ("ca", "cv")
 
 
 @trackers.register("imm")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class InteractingModels(LaneTracker):
     """Two Kalman filters, for a quiet and for a maneuvering target, and the odds between them.
 

@@ -25,6 +25,7 @@ from fuzzytrack.lanes.plots import (
 )  # fmt: skip
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.runner import InfinitePlotError, Runner
+from fuzzytrack.reprs import constructor_code
 from fuzzytrack.trackers.compiled_step import Hop
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult, checked_keep
@@ -55,6 +56,9 @@ class LaneTracker(ABC):
     coupled: bool = False
     needs_sigma: bool = False
     sigma_w: float | None = None
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
 
     @property
     def name(self) -> str:

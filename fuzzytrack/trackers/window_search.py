@@ -22,7 +22,7 @@ __all__ = ["WindowSearch"]
 
 
 @trackers.register("window-search")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WindowSearch(LaneTracker):
     """α with the least innovations over the last plots: method M4 of Al-Wagih & Abdulla.
 

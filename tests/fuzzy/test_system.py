@@ -201,7 +201,9 @@ def test_width_of_fuzzy_inputs_is_checked_when_built():
 
 
 def test_repr_names_the_rule_base_and_the_method():
-    assert repr(FuzzySystem(asymmetric_base())) == "FuzzySystem('asymmetric', method='exact')"
+    shown = repr(FuzzySystem(asymmetric_base(), "relation"))
+    assert shown.startswith('FuzzySystem(<RuleBase "asymmetric": ')
+    assert shown.endswith(' rules>, method="relation")')
 
 
 # ------------------------------------------------------------ nothing fires
