@@ -66,7 +66,7 @@ COMMANDS = (
 def _run(*command: str, cache: str | None = None) -> subprocess.CompletedProcess[str]:
     environment = dict(os.environ, MPLBACKEND="Agg")
     if cache is not None:
-        environment["NUMBA_CACHE_DIR"] = cache
+        environment["FUZZYTRACK_CACHE_DIR"] = cache
     done = subprocess.run(
         [sys.executable, *command], cwd=ROOT, env=environment, capture_output=True, text=True
     )
@@ -91,7 +91,7 @@ def cold_start(scale: Scale) -> list[Row]:
             begin = time.perf_counter()
             first = float(_run("-c", code, cache=cache).stdout)
             without.append((first, time.perf_counter() - begin))
-            files = len(list(Path(cache).rglob("*.nbc")))
+            files = len(list(Path(cache).glob("kernel-*")))
             if not files:
                 raise RuntimeError("nothing compiled was left on disk")
             for _ in range(scale.processes):

@@ -20,7 +20,7 @@ from benchmarks.work import (
     updates_a_second,
     warm,
 )
-from fuzzytrack.kernels.calls import call_steady
+from fuzzytrack.kernels.llvm import call_steady
 from fuzzytrack.lanes import block_loop as passage
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, aligned
 from fuzzytrack.trackers.lane_tracker import runner

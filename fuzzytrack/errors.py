@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 __all__ = [
+    "CacheWarning",
     "DataError",
     "FileError",
     "Location",
@@ -91,3 +92,7 @@ class NoRuleFiresWarning(UserWarning):
 
 class PluginWarning(UserWarning):
     """A plug-in was skipped: it could not be loaded, or its name is taken."""
+
+
+class CacheWarning(UserWarning):
+    """Compiled code could not be kept on disk, so that every process compiles it again."""

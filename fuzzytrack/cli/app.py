@@ -46,6 +46,7 @@ COMMANDS = {
     ),
     "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
     "design": ("design:design", "Choose gains by a rule of design, and say what they do."),
+    "cache": ("cache:cache", "Show where compiled code is kept and how much of it, or remove it."),
 }
 
 

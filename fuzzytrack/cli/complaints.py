@@ -11,7 +11,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from fuzzytrack.errors import FileError, NoRuleFiresWarning, PluginWarning
+from fuzzytrack.errors import CacheWarning, FileError, NoRuleFiresWarning, PluginWarning
 
 __all__ = ["Command", "Commands", "one_line"]
 
@@ -41,7 +41,7 @@ class Commands(TyperGroup):
         extra["standalone_mode"] = False
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
-            for category in (NoRuleFiresWarning, PluginWarning):
+            for category in (CacheWarning, NoRuleFiresWarning, PluginWarning):
                 warnings.simplefilter("always", category)
             try:
                 status = super().main(*args, **extra)

@@ -1,4 +1,27 @@
 """Scalar functions in plain Python, and their compilation by Numba.
 
-The only package that imports Numba. It knows nothing of tracks.
+The only package that imports Numba and llvmlite. It knows nothing of tracks.
+
+=============  =====================================================================
+`language`     words that such a function may use beside plain Python
+`rebuild`      copies of functions with other values in place; the content of one
+`compile`      a function to compiled code, with all that it calls
+`llvm`         what Numba's public interface does not offer
+`cache`        the folder in which compiled code is kept
+=============  =====================================================================
+
+**Private parts of Numba and llvmlite.** They have no public way for the following, so `llvm` uses
+what may change with any release:
+
+- ``Dispatcher._cache``, ``CFunc._cache`` and ``CFunc`` itself, ``NullCache``, the methods
+  ``_reduce`` and ``_rebuild`` of ``CompileResult``, and ``numba.core.serialize``: to keep compiled
+  code by its content. When they change, compiling fails with an `AttributeError` or `ImportError`,
+  or code is compiled anew in every process.
+- Function attributes, metadata and blocks of ``llvmlite.ir``, and ``numba.core.cgutils``: to tell
+  LLVM that loops may use wide vectors and have independent turns. When they change, compiling
+  fails, or the code becomes several times slower with the same results.
+- ``_Intrinsic._defn``, in `rebuild`: the content of an intrinsic.
+
+So pyproject.toml allows only versions of Numba that were tried. To try another one, install it, run
+``python -m pytest tests/kernels tests/lanes tests/trackers``, and change the bounds there.
 """

@@ -1,87 +1,196 @@
-"""Compiled code kept on disk, so that another process need not compile it again."""
+"""The folder in which compiled code is kept, so that another process need not compile it again.
+
+It knows files only. What they are named and hold is up to `fuzzytrack.kernels.llvm`.
+"""
 
 from __future__ import annotations
 
-import hashlib
 import os
-import pickle
+import stat
 import tempfile
-from collections.abc import Callable
+import time
+import warnings
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import Any
 
-from numba.core.caching import CompileResultCacheImpl, _Cache
-from numba.core.serialize import dumps
+from fuzzytrack.errors import CacheWarning
 
-__all__ = ["KernelCache"]
+__all__ = ["MOST_BYTES", "MOST_FILES", "VARIABLE", "KernelFolder"]
 
-#: Files kept; the oldest go first.
-KEPT = 400
+#: Environment variable that names another folder; empty or ``off``: nothing is kept.
+VARIABLE = "FUZZYTRACK_CACHE_DIR"
+
+#: Files and bytes that are kept; those that were not used for the longest time go first.
+MOST_FILES = 500
+MOST_BYTES = 100_000_000
+
+# Every file of ours begins so; nothing else in the folder is ever touched.
+_PREFIX = "kernel-"
+#: Raise it when files of older versions can no longer be read; they are removed then.
+_FORMAT = 1
+_SUFFIX = f".{_FORMAT}"
+_DRAFT = ".draft"
+#: Age (s) from which the draft of a file is taken for that of a process that was killed.
+_DRAFT_IS_LEFT = 3600.0
 
 
-class KernelCache(_Cache):
-    """Keeps what Numba makes of one function in files, one for each signature.
+@dataclass(frozen=True)
+class KernelFolder:
+    """A folder of compiled code.
 
-    Numba's own cache tells closures apart by pickling them, which for compiled helpers gives other
-    bytes in every process, and keeps an index that two processes may overwrite for one another.
+    Code from it is run, so it is used only if nobody but its owner can write there: the folder and
+    each file must belong to the current user, and group and others must not have the right to write
+    (on systems with such permissions).
 
     Parameters
     ----------
-    function : callable
-        The function that is compiled, defined in a file.
-    digest : str
-        See `fuzzytrack.kernels.compile.fingerprint`.
+    path : Path or None
+        None if nothing is to be kept.
     """
 
-    def __init__(self, function: Callable[..., Any], digest: str) -> None:
-        self._implementation: Any = CompileResultCacheImpl(function)
-        self._folder = Path(self._implementation.locator.get_cache_path())
-        self._digest = digest
+    path: Path | None
 
-    @property
-    def cache_path(self) -> str:
-        """Folder of the files."""
-        return str(self._folder)
+    @classmethod
+    def of_user(cls) -> KernelFolder:
+        """The folder that the environment names, or else one in the user's cache folder."""
+        named = os.environ.get(VARIABLE)
+        if named is None:
+            import platformdirs
 
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Compiled code of a signature, or None."""
-        target_context.refresh()
-        try:
-            content = self._file(sig, target_context.codegen()).read_bytes()
-            return self._implementation.rebuild(target_context, pickle.loads(content))
-        # A file that is missing, cut short or of another make is as good as none.
-        except Exception:
+            return cls(platformdirs.user_cache_path("fuzzytrack", appauthor=False) / "kernels")
+        return cls(None if named in ("", "off") else Path(named).absolute())
+
+    def read(self, name: str) -> bytes | None:
+        """Content of a file, or None if there is none that can be trusted."""
+        if self.path is None:
             return None
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep compiled code, if the disk allows."""
-        if not self._implementation.check_cachable(data):
-            return
-        content = dumps(self._implementation.reduce(data))
+        file = self._file(name)
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            handle, draft = tempfile.mkstemp(dir=self._folder)
+            if _writable_by_others(self.path.stat()):
+                return None
+            with file.open("rb") as stream:
+                if _writable_by_others(os.fstat(stream.fileno())):
+                    return None
+                content = stream.read()
+        except OSError:
+            return None
+        with suppress(OSError):
+            # Files that are used stay longest.
+            os.utime(file)
+        return content
+
+    def write(self, name: str, content: bytes) -> None:
+        """Keep a file; if that is impossible, say so once in a process, with a `CacheWarning`."""
+        if self.path is None:
+            return
+        problem = self._make()
+        if problem is None:
+            try:
+                self._replace(self._file(name), content)
+            except OSError as error:
+                problem = f"{self.path}: {error.strerror or error}"
+        if problem is not None:
+            _warn_once(problem)
+        else:
+            self._tidy()
+
+    def problem(self) -> str | None:
+        """Why nothing can be kept, or None. Makes the folder if it does not exist."""
+        if self.path is None:
+            return f"{VARIABLE} says so"
+        problem = self._make()
+        if problem is None and not os.access(self.path, os.W_OK | os.X_OK):
+            problem = f"{self.path}: Permission denied"
+        return problem
+
+    def files(self) -> list[tuple[Path, os.stat_result]]:
+        """The files of compiled code with their sizes and times, the one used last first."""
+        return [(file, status) for file, status in self._all() if file.suffix == _SUFFIX]
+
+    def clear(self) -> tuple[int, int]:
+        """Remove all files of compiled code; returns how many, and their bytes."""
+        removed = [status.st_size for file, status in self._all() if _remove(file)]
+        return len(removed), sum(removed)
+
+    def _file(self, name: str) -> Path:
+        assert self.path is not None
+        return self.path / f"{_PREFIX}{name}{_SUFFIX}"
+
+    def _make(self) -> str | None:
+        """Make the folder; returns why it cannot be used, or None."""
+        path = self.path
+        assert path is not None
+        if not path.is_absolute():
+            # Of a user without a home folder, platformdirs gives a path that begins with "~".
+            return "the user has no home folder"
+        try:
+            path.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if _writable_by_others(path.stat()):
+                return f"{path}: other users can write there"
+        except OSError as error:
+            return f"{path}: {error.strerror or error}"
+        return None
+
+    def _replace(self, file: Path, content: bytes) -> None:
+        """Write a file whole or not at all, for the owner only."""
+        # mkstemp gives rights to the owner only.
+        handle, draft = tempfile.mkstemp(_DRAFT, _PREFIX, self.path)
+        try:
             with os.fdopen(handle, "wb") as stream:
                 stream.write(content)
-            os.replace(draft, self._file(sig, data.codegen))
-            self._prune()
+            os.replace(draft, file)
         except OSError:
-            return
+            _remove(Path(draft))
+            raise
 
-    def _file(self, sig: Any, codegen: Any) -> Path:
-        key = repr((self._digest, str(sig), codegen.magic_tuple())).encode()
-        return self._folder / f"kernel-{hashlib.sha256(key).hexdigest()[:32]}.nbc"
+    def _tidy(self) -> None:
+        """Remove what is left over, and what is too much."""
+        number = size = 0
+        for file, status in self._all():
+            if file.suffix == _DRAFT:
+                unwanted = time.time() - status.st_mtime > _DRAFT_IS_LEFT
+            elif file.suffix != _SUFFIX:
+                unwanted = True
+            else:
+                number, size = number + 1, size + status.st_size
+                unwanted = number > MOST_FILES or size > MOST_BYTES
+            if unwanted:
+                _remove(file)
 
-    def _prune(self) -> None:
-        files = sorted(self._folder.glob("kernel-*.nbc"), key=lambda path: path.stat().st_mtime)
-        for old in files[:-KEPT]:
-            old.unlink(missing_ok=True)
+    def _all(self) -> list[tuple[Path, os.stat_result]]:
+        """All files of ours, drafts and other formats included, the one used last first."""
+        found = []
+        if self.path is not None:
+            for file in self.path.glob(f"{_PREFIX}*"):
+                # Another process may just have removed it.
+                with suppress(OSError):
+                    found.append((file, file.stat()))
+        return sorted(found, key=lambda pair: pair[1].st_mtime, reverse=True)
 
-    def enable(self) -> None:
-        """It always is."""
 
-    def disable(self) -> None:
-        """Nothing asks for it."""
+def _writable_by_others(status: os.stat_result) -> bool:
+    """Whether a user other than the current one could have written there."""
+    if not hasattr(os, "geteuid"):
+        return False
+    return status.st_uid != os.geteuid() or bool(status.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
 
-    def flush(self) -> None:
-        """Nothing asks for it."""
+
+def _remove(file: Path) -> bool:
+    """Remove a file; False if that is impossible, as when another process was first."""
+    try:
+        file.unlink()
+    except OSError:
+        return False
+    return True
+
+
+@cache
+def _warn_once(problem: str) -> None:
+    warnings.warn(
+        f"compiled code is not kept for other processes: {problem}; set {VARIABLE} to a folder of "
+        "your own, or to off",
+        CacheWarning,
+        stacklevel=2,
+    )

@@ -1,30 +1,185 @@
-"""Marks the loops of a compiled function for LLVM. Importing this needs Numba."""
+"""What Numba's public interface does not offer: code kept by content, and words to LLVM.
+
+Importing this needs Numba. See `fuzzytrack.kernels` for what breaks when Numba changes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import hashlib
+import pickle
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from typing import Any
 
+import llvmlite
+import numba
+import numpy as np
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
+from numba.core.caching import NullCache
+from numba.core.ccallback import CFunc
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 from numba.extending import intrinsic
 
-__all__ = ["mark_loops"]
+from fuzzytrack.kernels import language
+from fuzzytrack.kernels.cache import KernelFolder
 
-#: Vectors that go through a turn at a time.
-VECTORS = 2
+__all__ = ["c_function", "call_steady", "call_step", "keep_on_disk", "word_for_compiler"]
 
+#: Part of what code is kept by. Raise it when this room compiles the same function differently.
+_SCHEME = 5
+_MADE_BY = (_SCHEME, sys.implementation.cache_tag, numba.__version__, llvmlite.__version__)
+
+#: Vectors that the compiler works on in each turn of a loop.
+_VECTORS = 2
+
+
+# ---------------------------------------------------------------- code kept on disk
+
+
+class _ByContent(NullCache):
+    """Numba's cache of one function, with its files named by the content of the function.
+
+    Numba's own cache recognizes a closure by its pickled variables. Those of compiled helpers
+    differ from process to process, so it would find nothing again.
+    """
+
+    def __init__(self, digest: str) -> None:
+        self._digest = digest
+
+    def load_overload(self, signature: Any, target_context: Any) -> Any:
+        """Compiled code for a signature, or None."""
+        target_context.refresh()
+        content = KernelFolder.of_user().read(self._name(signature, target_context.codegen()))
+        if content is None:
+            return None
+        try:
+            return CompileResult._rebuild(target_context, *pickle.loads(content))
+        # A damaged file; it is replaced by what is compiled now.
+        except Exception:
+            return None
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep compiled code for a signature."""
+        if not result.lifted and not result.library.has_dynamic_globals:
+            name = self._name(signature, result.codegen)
+            KernelFolder.of_user().write(name, dumps(result._reduce()))
+
+    def _name(self, signature: Any, codegen: Any) -> str:
+        # The last part is the processor with its features.
+        key = (_MADE_BY, self._digest, str(signature), codegen.magic_tuple())
+        return hashlib.sha256(repr(key).encode()).hexdigest()[:32]
+
+
+def keep_on_disk(compiled: Any, digest: str | None) -> None:
+    """Keep the code of a Numba dispatcher or C function on disk, under the digest of its source.
+
+    Without a digest it is compiled anew in every process.
+    """
+    if digest is not None:
+        compiled._cache = _ByContent(digest)
+
+
+def c_function(
+    function: Callable[..., Any], arguments: tuple[Any, ...], result: Any, digest: str | None
+) -> Any:
+    """Compile a function for calls by its address.
+
+    Parameters
+    ----------
+    function : callable
+    arguments : tuple of Numba types
+    result : Numba type
+    digest : str or None
+        See `keep_on_disk`.
+    """
+    made: Any = CFunc(function, (arguments, result), {}, {"error_model": "numpy"})
+    keep_on_disk(made, digest)
+    made.compile()
+    return made
+
+
+# ---------------------------------------------------------------- words of the language
+
+
+def word_for_compiler(function: Callable[..., Any], dtype: type) -> Any:
+    """What compiled code has in place of a word of `fuzzytrack.kernels.language`.
+
+    Parameters
+    ----------
+    function : callable
+    dtype : type
+        Type of number that is compiled for.
+
+    Returns
+    -------
+    Numba intrinsic or None
+        None for any other function.
+    """
+    if function is language.own_numbers:
+        return _own_numbers(dtype)
+    return _WORDS.get(function)
+
+
+def _use_wide_vectors(typing_context: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        # LLVM has this attribute as text only, and the list of llvmlite refuses texts.
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+@cache
+def _own_numbers(dtype: type) -> Any:
+    number = numba.from_dtype(np.dtype(dtype))
+
+    def declare(typing_context: Any, count: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            numbers = context.get_data_type(number)
+            return cgutils.alloca_once(builder, numbers, size=count.literal_value)
+
+        return types.CPointer(number)(count), generate
+
+    return intrinsic(prefer_literal=True)(declare)
+
+
+def _promise_independent_turns(typing_context: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        function, module = builder.function, builder.module
+        group = _Distinct(module)
+        for block in function.blocks:
+            for instruction in block.instructions:
+                # What is inlined takes over the group of its call.
+                if isinstance(instruction, _TOUCHING):
+                    instruction.set_metadata("llvm.access.group", group)
+        independent = _entry(module, "llvm.loop.parallel_accesses", group)
+        count = ir.Constant(ir.IntType(32), _VECTORS)
+        interleaved = _entry(module, "llvm.loop.interleave.count", count)
+        for branch in _branches_back(function.blocks):
+            loop = _Distinct(module)
+            loop.operands = (loop, independent, interleaved)
+            branch.set_metadata("llvm.loop", loop)
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+#: Instructions that may read or write memory.
 _TOUCHING = (ir.LoadInstr, ir.StoreInstr, ir.CallInstr)
 
 
 class _Distinct(ir.MDValue):  # type: ignore[misc]
-    """A node of metadata that equals no other, as LLVM names groups and loops; llvmlite has none.
+    """Metadata that equals no other: LLVM names groups of accesses and loops so; llvmlite has none.
 
-    Its first operand is itself, if it is the name of a loop.
+    The first operand of the name of a loop is that name itself.
     """
 
-    def __init__(self, module: Any, operands: tuple[Any, ...] = ()) -> None:
-        super().__init__(module, operands, name=str(len(module.metadata)))
+    def __init__(self, module: Any) -> None:
+        super().__init__(module, (), name=str(len(module.metadata)))
 
     def descr(self, buf: list[str]) -> None:
         inside = ", ".join(operand.get_reference() for operand in self.operands)
@@ -37,37 +192,14 @@ class _Distinct(ir.MDValue):  # type: ignore[misc]
         return id(self)
 
 
-def _mark_loops(typing_context: Any) -> Any:
-    """See `fuzzytrack.kernels.compile.promise_independent_turns`."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        function, module = builder.function, builder.module
-        group = _Distinct(module)
-        for block in function.blocks:
-            for instruction in block.instructions:
-                # What is inlined takes over the group of its call.
-                if isinstance(instruction, _TOUCHING):
-                    instruction.set_metadata("llvm.access.group", group)
-        independent = _entry(module, "llvm.loop.parallel_accesses", group)
-        count = ir.Constant(ir.IntType(32), VECTORS)
-        interleaved = _entry(module, "llvm.loop.interleave.count", count)
-        for branch in _branches_back(function.blocks):
-            loop = _Distinct(module)
-            loop.operands = (loop, independent, interleaved)
-            branch.set_metadata("llvm.loop", loop)
-        return context.get_dummy_value()
-
-    return types.void(), generate
-
-
 def _entry(module: Any, name: str, value: Any) -> Any:
     return module.add_metadata([ir.MetaDataString(module, name), value])
 
 
 def _branches_back(blocks: Sequence[Any]) -> Iterator[Any]:
-    """Ends of blocks that lead to a block on the way to them."""
+    """Ends of blocks that lead back to a block on the way to them, so that they close a loop."""
     done: set[Any] = set()
-    # The very first block does not yet lead to the one that was written first.
+    # From every block: the first one does not yet lead to those that were written before it ended.
     for start in blocks:
         way = [] if start in done else [(start, iter(_next_blocks(start)))]
         while way:
@@ -83,10 +215,69 @@ def _branches_back(blocks: Sequence[Any]) -> Iterator[Any]:
 
 
 def _next_blocks(block: Any) -> list[Any]:
-    # Those that are not yet written have no end.
+    # Blocks that are still being written have no end.
     operands = () if block.terminator is None else block.terminator.operands
     return [operand for operand in operands if isinstance(operand, ir.Block)]
 
 
-# Numba gives the context by itself.
-mark_loops: Any = intrinsic(_mark_loops)
+# Numba adds the context to the arguments by itself.
+_WORDS: dict[Callable[..., Any], Any] = {
+    language.use_wide_vectors: intrinsic(_use_wide_vectors),
+    language.promise_independent_turns: intrinsic(_promise_independent_turns),
+}
+
+
+# ---------------------------------------------------------------- calls by address
+
+# So the loop over a whole job is compiled once, and each tracker compiles its own arithmetic only.
+
+
+def _place(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+    """Address of a number of an array."""
+    data = context.make_array(array_type)(context, builder, array).data
+    return builder.gep(data, [index])
+
+
+def _call(builder: Any, address: Any, arguments: list[Any]) -> None:
+    function = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
+    builder.call(builder.inttoptr(address, function.as_pointer()), arguments)
+
+
+def _call_step(typing_context: Any, step: Any, buffer: Any, count: Any) -> Any:
+    """Call the function at the address `step` with pointer to the buffer and count."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        step, buffer, count = arguments
+        start = ir.Constant(count.type, 0)
+        place = _place(context, builder, signature.args[1], buffer, start)
+        _call(builder, step, [place, count])
+        return context.get_dummy_value()
+
+    return types.void(types.intp, buffer, types.intp), generate
+
+
+def _call_steady(
+    typing_context: Any, steady: Any, buffer: Any, count: Any, dt: Any,
+    plots: Any, plots_at: Any, predicted: Any, predicted_at: Any,
+) -> Any:  # fmt: skip
+    """Call the function at the address `steady` likewise, with pointers into two more arrays."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        steady, buffer, count, dt, plots, plots_at, predicted, predicted_at = arguments
+        start = ir.Constant(count.type, 0)
+        kinds = signature.args
+        given = [
+            _place(context, builder, kinds[1], buffer, start), count, dt,
+            _place(context, builder, kinds[4], plots, plots_at),
+            _place(context, builder, kinds[6], predicted, predicted_at),
+        ]  # fmt: skip
+        _call(builder, steady, given)
+        return context.get_dummy_value()
+
+    whole = types.intp
+    arguments = (whole, buffer, whole, buffer.dtype, plots, whole, predicted, whole)
+    return types.void(*arguments), generate
+
+
+call_step: Any = intrinsic(_call_step)
+call_steady: Any = intrinsic(_call_steady)

@@ -11,8 +11,9 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from fuzzytrack.kernels.calls import call_steady, call_step
-from fuzzytrack.kernels.compile import compiled, fingerprint, use_wide_vectors
+from fuzzytrack.kernels.compile import compiled
+from fuzzytrack.kernels.language import use_wide_vectors
+from fuzzytrack.kernels.llvm import call_steady, call_step
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows
 
 __all__ = ["compiled_hop", "compiled_run", "layout"]
@@ -136,10 +137,10 @@ def _hop(
 @cache
 def compiled_run() -> Callable[..., int]:
     """`_run`, compiled; other threads may run meanwhile."""
-    return compiled(_run, fingerprint(_run), nogil=True)
+    return compiled(_run, nogil=True)
 
 
 @cache
 def compiled_hop() -> Callable[..., int]:
     """`_hop`, compiled; for the one type of arguments that it is first called with."""
-    return compiled(_hop, fingerprint(_hop))
+    return compiled(_hop)

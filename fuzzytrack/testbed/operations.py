@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from types import CellType, CodeType, FunctionType, SimpleNamespace
+from types import CodeType, FunctionType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from fuzzytrack.kernels.rebuild import rebuilt
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -320,7 +321,7 @@ def _counting(
     def prepare(value: Any) -> Any:
         if isinstance(value, FunctionType):
             if id(value) not in known:
-                known[id(value)] = rebuild(value)
+                known[id(value)] = counting(value)
             return known[id(value)]
         if value is math:
             return namespace
@@ -330,14 +331,9 @@ def _counting(
             return tuple(prepare(v) for v in value)
         return _elementary(value, tally)
 
-    def rebuild(original: FunctionType) -> Callable[..., Any]:
-        names = _names(original.__code__)
-        scope = {n: prepare(v) for n, v in original.__globals__.items() if n in names}
-        cells = tuple(CellType(prepare(c.cell_contents)) for c in original.__closure__ or ())
+    def counting(original: FunctionType) -> Callable[..., Any]:
         # Literals count too, since a select may pass one on to an operation with another.
-        code = original.__code__
-        code = code.replace(co_consts=tuple(prepare(c) for c in code.co_consts))
-        copy = FunctionType(code, scope, original.__name__, original.__defaults__, cells)
+        copy = rebuilt(original, prepare)
         if original.__code__ is not kernel:
             return copy
 
@@ -349,8 +345,8 @@ def _counting(
 
         return watched
 
-    counting: Callable[..., Any] = prepare(function)
-    return counting
+    prepared: Callable[..., Any] = prepare(function)
+    return prepared
 
 
 def _elementary(value: Any, tally: Tally) -> Any:
@@ -370,9 +366,3 @@ def _elementary(value: Any, tally: Tally) -> Any:
         return tally.number(answer)
 
     return call
-
-
-def _names(code: CodeType) -> set[str]:
-    """Names that a function may look up globally, inner functions included."""
-    inner = (c for c in code.co_consts if isinstance(c, CodeType))
-    return set(code.co_names).union(*map(_names, inner))

@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from fuzzytrack.kernels.compile import (
+from fuzzytrack.kernels.language import (
     own_numbers,
     promise_independent_turns,
     use_wide_vectors,

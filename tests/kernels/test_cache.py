@@ -1,201 +1,176 @@
-"""Compiled code is known by its content, and serves another process."""
+"""The folder of compiled code: who may write there, how much it holds, what happens without it."""
 
 import os
-import subprocess
-import sys
+import re
+import stat
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-import fuzzytrack as ft
-from fuzzytrack.kernels.cache import KernelCache
-from fuzzytrack.kernels.compile import compiled, fingerprint
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.errors import CacheWarning
+from fuzzytrack.kernels import cache
+from fuzzytrack.kernels.cache import VARIABLE, KernelFolder
 
-SCALE = 2.0
-
-
-def helper(x):
-    return x * SCALE
-
-
-def make(offset, table=(), call=helper):
-    def function(x):
-        return call(x) + offset + (table[0] if table else 0.0)
-
-    return function
-
-
-def other_helper(x):
-    return x / SCALE
-
-
-def test_equal_functions_have_one_fingerprint():
-    assert fingerprint(make(1.0)) == fingerprint(make(1.0))
-
-
-@pytest.mark.parametrize(
-    "other",
-    [
-        make(1.5),
-        make(1),
-        make(-0.0),
-        make(True),
-        make(1.0, (3.0,)),
-        make(1.0, ((3.0, 4.0),)),
-        make(1.0, np.array([3.0])),
-        make(1.0, call=other_helper),
-        make(1.0, call=make(1.0)),
-        helper,
-    ],
-)
-def test_whatever_differs_shows(other):
-    assert fingerprint(other) != fingerprint(make(1.0))
-
-
-def test_values_beside_each_other_are_told_apart():
-    assert fingerprint(make(1.0, (1, 23))) != fingerprint(make(1.0, (12, 3)))
-    assert fingerprint(make(1.0, ("a", "b"))) != fingerprint(make(1.0, ("a', 'b",)))
-    assert fingerprint(make(1.0, ((1, 2), 3))) != fingerprint(make(1.0, (1, (2, 3))))
-
-
-def test_a_changed_global_shows(monkeypatch):
-    before = fingerprint(make(1.0))
-    monkeypatch.setitem(globals(), "SCALE", 3.0)
-    assert fingerprint(make(1.0)) != before
-
-
-def test_what_cannot_be_told_has_none():
-    assert fingerprint(make(object())) is None
-    assert fingerprint(make({"a": 1.0})) is None
-
-
-def test_every_scheduler_of_ours_can_be_told():
-    for tracker in (
-        ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)),
-        ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("chan-style"))),
-        ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping"), "table")),
-    ):
-        for n_axes in (1, 2):
-            step = runner(tracker, n_axes).program.step(8)
-            again = type(tracker)(tracker.scheduler).program(n_axes).step(8)
-            assert fingerprint(step) == fingerprint(again) is not None
-
-
-SCRIPT = """
-import numpy as np
-import fuzzytrack as ft
-from fuzzytrack.lanes import runner
-runner.COMPILE_ABOVE = 0
-z = np.random.default_rng(3).normal(size=(9, 4)).cumsum(axis=0)
-result = ft.AlphaBetaTracker(ft.FixedGains(0.4, 0.1)).run(np.arange(9.0), z)
-print(result.filtered.tobytes().hex())
-"""
-
-
-def test_another_process_takes_what_one_has_compiled(tmp_path):
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-
-    def run():
-        done = subprocess.run(
-            [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True
-        )
-        assert done.returncode == 0, done.stderr
-        return done.stdout, {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*.nbc")}
-
-    first, files = run()
-    assert len(files) == 3  # step, steady, and the passage that is the same for all trackers
-    second, same_files = run()
-    assert second == first
-    assert same_files == files  # nothing was compiled anew
-    for file in files:
-        file.write_bytes(file.read_bytes()[:1000])
-    third, repaired = run()
-    assert third == first
-    assert all(repaired[file] != files[file] for file in files)
-
-
-def test_names_of_compiled_functions_follow_their_content():
-    def name(function):
-        dispatcher = compiled(function)
-        dispatcher(1.0)
-        return next(iter(dispatcher.overloads.values())).fndesc.mangled_name
-
-    first, again, other = (name(make(offset)).encode() for offset in (1.0, 1.0, 2.0))
-    digests = [fingerprint(make(offset))[:24].encode() for offset in (1.0, 1.0, 2.0)]
-    for text, digest in zip((first, again, other), digests, strict=True):
-        assert digest in text
-    assert digests[0] == digests[1] != digests[2]
-    # What cannot be told has a name of its own.
-    assert name(make(1.0, (np.float64(2.0),))) != name(make(1.0, (np.float64(2.0),)))
+HAS_OWNERS = hasattr(os, "geteuid")
+needs_owners = pytest.mark.skipif(not HAS_OWNERS, reason="files have no owner")
 
 
 @pytest.fixture
-def kept(tmp_path, monkeypatch):
-    """Function that compiles, with its files in a folder of its own."""
-    import numba
-
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-
-    def compile_and_call(offset):
-        function = make(offset)
-        dispatcher = compiled(function, fingerprint(function))
-        return dispatcher(1.0), Path(dispatcher._cache.cache_path)
-
-    return compile_and_call
+def folder(tmp_path):
+    return KernelFolder(tmp_path / "deep" / "kernels")
 
 
-def test_only_the_newest_files_stay(kept, monkeypatch):
-    monkeypatch.setattr("fuzzytrack.kernels.cache.KEPT", 2)
-    for offset in (1.0, 2.0, 3.0):
-        value, folder = kept(offset)
-        assert value == 2.0 + offset
-    assert len(list(folder.glob("kernel-*.nbc"))) == 2
-    assert not [p for p in folder.iterdir() if p.suffix != ".nbc"]
+@pytest.fixture(autouse=True)
+def nothing_said_yet():
+    cache._warn_once.cache_clear()
 
 
-def test_a_disk_that_is_full_is_no_harm(kept, monkeypatch):
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("tempfile.mkstemp", full)
-    assert kept(5.0)[0] == 7.0
+def ages(folder, *seconds):
+    """Let files, in order of their names, be that old."""
+    for (file, status), age in zip(sorted(folder.files()), seconds, strict=True):
+        os.utime(file, (status.st_atime, status.st_mtime - age))
 
 
-def test_numba_asks_the_cache_for_no_more():
-    cache = KernelCache(helper, "0")
-    cache.enable(), cache.disable(), cache.flush()
-    assert os.path.isdir(os.path.dirname(cache.cache_path))
+def contents(folder):
+    return {file.read_bytes() for file, _ in folder.files()}
 
 
-SEVERAL = """
-import sys
-import numpy as np
-import fuzzytrack as ft
-from fuzzytrack.schedulers import KalmanCV
-from fuzzytrack.trackers.lane_tracker import runner
-
-z = np.random.default_rng(3).normal(size=(9, 4, 1)).cumsum(axis=0)
-dts, sigmas = np.ones((9, 1)), np.full((1, 1, 1), 2.0)
-schedulers = {
-    "slow": ft.FixedGains(0.2, 0.02), "fast": ft.FixedGains(0.8, 0.6), "kalman": KalmanCV(0.5)
-}
-for name in sys.argv[1:]:
-    core = runner(ft.AlphaBetaTracker(schedulers[name]), 1)
-    plain, native = (core(core.fresh(4), z, dts, sigmas, native=way)[1] for way in (False, True))
-    for output in plain:
-        assert np.array_equal(plain[output], native[output], equal_nan=True), (name, output)
-"""
+def test_what_is_written_is_read(folder):
+    assert folder.read("a") is None
+    folder.write("a", b"code")
+    folder.write("a", b"newer code")
+    assert (folder.read("a"), folder.read("b")) == (b"newer code", None)
+    assert [status.st_size for _, status in folder.files()] == [10]
 
 
-def test_code_from_disk_and_new_code_are_not_mixed_up(tmp_path):
-    """Each process compiles in another order, so that Numba's own counters differ."""
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    for order in (["slow"], ["fast", "slow"], ["kalman", "slow", "fast"], ["fast", "kalman"]):
-        done = subprocess.run(
-            [sys.executable, "-c", SEVERAL, *order], env=environment, capture_output=True, text=True
-        )
-        assert done.returncode == 0, done.stderr
-    # For each scheduler step and steady, and the passage.
-    assert len(list(tmp_path.rglob("kernel-*.nbc"))) == 7
+@needs_owners
+def test_files_are_for_their_owner_only(folder):
+    before = os.umask(0)
+    try:
+        folder.write("a", b"code")
+    finally:
+        os.umask(before)
+    ((file, status),) = folder.files()
+    assert stat.S_IMODE(status.st_mode) == 0o600
+    assert stat.S_IMODE(file.parent.stat().st_mode) == 0o700
+
+
+@needs_owners
+@pytest.mark.parametrize("right", [stat.S_IWGRP, stat.S_IWOTH])
+def test_what_others_can_write_is_not_read(folder, right):
+    folder.write("a", b"code")
+    ((file, _),) = folder.files()
+    file.chmod(0o600 | right)
+    assert folder.read("a") is None
+    # What is compiled then takes its place.
+    folder.write("a", b"code")
+    assert folder.read("a") == b"code"
+    folder.path.chmod(0o700 | right)
+    assert folder.read("a") is None
+    with pytest.warns(CacheWarning, match="kernels: other users can write there; set FUZZYTRACK_C"):
+        folder.write("b", b"code")
+    assert len(folder.files()) == 1
+    assert folder.problem() == f"{folder.path}: other users can write there"
+
+
+@needs_owners
+def test_what_belongs_to_another_user_is_not_read(folder, monkeypatch):
+    folder.write("a", b"code")
+    user = os.geteuid()
+    monkeypatch.setattr(os, "geteuid", lambda: user + 1)
+    assert folder.read("a") is None
+    monkeypatch.delattr(os, "geteuid")
+    # A system without owners.
+    assert folder.read("a") == b"code"
+
+
+def test_those_used_last_stay(folder, monkeypatch):
+    monkeypatch.setattr(cache, "MOST_FILES", 3)
+    for name in "abc":
+        folder.write(name, name.encode())
+    ages(folder, 300, 200, 100)
+    assert folder.read("a") == b"a"
+    folder.write("d", b"d")
+    assert contents(folder) == {b"a", b"c", b"d"}
+
+
+def test_the_size_is_bounded(folder, monkeypatch):
+    monkeypatch.setattr(cache, "MOST_BYTES", 250)
+    for name in "abc":
+        folder.write(name, 100 * name.encode())
+        ages(folder, *range(100, 100 * len(folder.files()) + 1, 100))
+    assert len(folder.files()) == 2
+    assert 100 * b"c" in contents(folder)
+
+
+def test_leftovers_are_removed(folder):
+    folder.write("a", b"code")
+    for name, age in (("kernel-1.draft", 4000), ("kernel-2.draft", 1000), ("kernel-a.nbc", 0)):
+        path = folder.path / name
+        path.write_bytes(b"rest")
+        os.utime(path, (0, path.stat().st_mtime - age))
+    (folder.path / "letter.txt").write_text("not ours")
+    folder.write("b", b"code")
+    names = {path.name for path in folder.path.iterdir()} - {f.name for f, _ in folder.files()}
+    assert names == {"kernel-2.draft", "letter.txt"}
+    assert len(folder.files()) == 2
+    assert folder.clear() == (3, 12)
+    assert [path.name for path in folder.path.iterdir()] == ["letter.txt"]
+    assert folder.clear() == (0, 0)
+
+
+def test_several_may_write_and_remove_at_once(folder, monkeypatch):
+    monkeypatch.setattr(cache, "MOST_FILES", 2)
+
+    def work(number):
+        name, content = str(number % 5), bytes([number % 5]) * 1000
+        folder.write(name, content)
+        return folder.read(name) in (content, None)
+
+    with ThreadPoolExecutor(8) as pool:
+        assert all(pool.map(work, range(200)))
+    folder.write("last", b"")
+    assert len(folder.files()) <= 2
+    assert not list(folder.path.glob("*.draft"))
+
+
+def test_the_environment_names_the_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    assert KernelFolder.of_user() == KernelFolder(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(VARIABLE, "here")
+    assert KernelFolder.of_user() == KernelFolder(tmp_path / "here")
+    for value in ("", "off"):
+        monkeypatch.setenv(VARIABLE, value)
+        nothing = KernelFolder.of_user()
+        assert nothing.path is None
+        nothing.write("a", b"code")
+        assert (nothing.read("a"), nothing.files(), nothing.clear()) == (None, [], (0, 0))
+        assert nothing.problem() == "FUZZYTRACK_CACHE_DIR says so"
+    monkeypatch.delenv(VARIABLE)
+    assert "fuzzytrack" in KernelFolder.of_user().path.parts
+
+
+def test_a_user_without_a_home_keeps_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = KernelFolder(Path("~", ".cache"))
+    assert folder.problem() == "the user has no home folder"
+    with pytest.warns(CacheWarning, match="no home folder"):
+        folder.write("a", b"code")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_made_is_said_once(tmp_path):
+    (tmp_path / "file").write_text("")
+    folder = KernelFolder(tmp_path / "file" / "kernels")
+    words = (
+        f"compiled code is not kept for other processes: {folder.path}: Not a directory; set "
+        "FUZZYTRACK_CACHE_DIR to a folder of your own, or to off"
+    )
+    with pytest.warns(CacheWarning, match=f"^{re.escape(words)}$"):
+        folder.write("a", b"code")
+    # A second warning would be an error here.
+    folder.write("b", b"code")
+    assert folder.read("a") is None
+    assert folder.problem() == f"{folder.path}: Not a directory"

@@ -1,11 +1,11 @@
 """What LLVM is told of the loops of a compiled function."""
 
-import numba
 import numpy as np
 import pytest
 from llvmlite import ir
 
-from fuzzytrack.kernels.compile import entry_point, promise_independent_turns
+from fuzzytrack.kernels.compile import entry_point
+from fuzzytrack.kernels.language import promise_independent_turns
 from fuzzytrack.kernels.llvm import _branches_back
 
 
@@ -45,9 +45,9 @@ def test_branches_back(targets, back):
     assert sorted(found) == back
 
 
-def test_the_promise_reaches_the_compiler(monkeypatch, tmp_path):
+def test_the_promise_reaches_the_compiler(monkeypatch):
     # Code from disk cannot be read.
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("FUZZYTRACK_CACHE_DIR", "off")
 
     def doubled(numbers, count):
         for i in range(count):

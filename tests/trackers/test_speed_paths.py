@@ -7,7 +7,6 @@ import re
 import threading
 
 import llvmlite.binding
-import numba
 import numpy as np
 import pytest
 
@@ -250,8 +249,8 @@ def test_scratch_begins_with_a_line_of_the_cache():
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads x86 assembly")
 @pytest.mark.parametrize("name", ["fixed", "fuzzy"])
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
-def test_several_lanes_are_worked_on_at_once(name, dtype, monkeypatch, tmp_path):
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+def test_several_lanes_are_worked_on_at_once(name, dtype, monkeypatch):
+    monkeypatch.setenv("FUZZYTRACK_CACHE_DIR", "off")
     code = entry_point(TRACKERS[name].program(1).steady(BLOCK, False), "vpixpp", dtype)
     assembly = code._library.get_asm_str()
     kind = "pd" if dtype is np.float64 else "ps"
