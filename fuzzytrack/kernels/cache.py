@@ -101,8 +101,11 @@ class KernelFolder:
         if self.path is None:
             return f"{VARIABLE} says so"
         problem = self._make()
-        if problem is None and not os.access(self.path, os.W_OK | os.X_OK):
-            problem = f"{self.path}: Permission denied"
+        if problem is None:
+            try:
+                tempfile.TemporaryFile(dir=self.path).close()
+            except OSError as error:
+                return f"{self.path}: {error.strerror or error}"
         return problem
 
     def files(self) -> list[tuple[Path, os.stat_result]]:

@@ -141,7 +141,7 @@ def test_numbers_of_single_precision():
     assert float(rounded(0.1, np.float32)) != 0.1
     assert math.isinf(rounded(math.inf, np.float32))
     for lacking in (1e300, 1e-300):
-        with pytest.raises(ValueError, match=f"{re.escape(f"{lacking:g}")}, which float32 lacks; use float64"):
+        with pytest.raises(ValueError, match=re.escape(f"{lacking:g}, which float32 lacks")):
             rounded(lacking, np.float32)
     np.testing.assert_array_equal(table((1e-300, 2.0), np.float32), [0.0, 2.0])
     with pytest.raises(ValueError, match=r"1e\+300, which float32 lacks"):
