@@ -23,10 +23,8 @@ from fuzzytrack.cli.output import (
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import whole_file
 from fuzzytrack.io.json_types import plain
-from fuzzytrack.papers.catalog import COST, PAPERS
-from fuzzytrack.papers.catalog import reproduce as rebuild
+from fuzzytrack.papers.catalog import PAPERS, reproduce_all
 from fuzzytrack.papers.reproduction import Reproduction
-from fuzzytrack.tasks import part
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["reproduce"]
@@ -53,13 +51,8 @@ def reproduce(
     if chosen[0] not in PAPERS:
         raise ValueError(f"no such paper {paper!r}{suggestion(paper, [*PAPERS, 'all'])}")
     folder = None if output is None else output_folder(output)
-    found = []
     with progress(f"rebuilding {paper}") as watch:
-        before, all_of_it = 0.0, sum(COST[name] for name in chosen)
-        for name in chosen:
-            after = before + COST[name] / all_of_it
-            found.append(rebuild(name, runs, seed, part(watch, before, after)))
-            before = after
+        found = reproduce_all(chosen, runs, seed, watch)
     written = [] if folder is None else _write(folder, found)
     if json:
         one = found[0].to_json_dict()

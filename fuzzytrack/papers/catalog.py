@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Sequence
 
 from fuzzytrack.papers.reproduction import Reproduction
 from fuzzytrack.simulation.noise import check_runs
-from fuzzytrack.tasks import Progress
+from fuzzytrack.tasks import Progress, part
 
-__all__ = ["COST", "PAPERS", "reproduce"]
+__all__ = ["PAPERS", "reproduce", "reproduce_all"]
 
 #: Papers by name, and the modules that rebuild their experiments.
 PAPERS = {
@@ -19,8 +20,8 @@ PAPERS = {
     "zhang-jiang": "zhang_jiang",
 }
 
-#: About how long each takes, relative to the others.
-COST = {"alwagih-abdulla": 5, "kim-lee": 1, "llinas": 8, "njonjo": 9, "zhang-jiang": 0.1}
+# About how long each takes, relative to the others.
+_COST = {"alwagih-abdulla": 5, "kim-lee": 1, "llinas": 8, "njonjo": 9, "zhang-jiang": 0.1}
 
 
 def reproduce(
@@ -54,4 +55,20 @@ def reproduce(
     count = module.RUNS if runs is None else runs
     check_runs(count, seed)
     found: Reproduction = module.reproduce(count, seed, progress or (lambda share: None))
+    return found
+
+
+def reproduce_all(
+    names: Sequence[str],
+    runs: int | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> list[Reproduction]:
+    """Rebuild the experiments of several papers; parameters as for `reproduce`."""
+    watch = progress or (lambda share: None)
+    found, before, whole = [], 0.0, sum(_COST[name] for name in names)
+    for name in names:
+        after = before + _COST[name] / whole
+        found.append(reproduce(name, runs, seed, part(watch, before, after)))
+        before = after
     return found

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from fuzzytrack.papers import catalog
+from fuzzytrack.papers import zhang_jiang
 
 
 def test_a_table_of_published_and_own_numbers(run):
@@ -65,12 +65,12 @@ def test_the_folder_must_be_one(fails, tmp_path):
 
 def test_runs_and_seed_reach_the_paper(run, monkeypatch):
     asked = []
-    original = catalog.reproduce
+    original = zhang_jiang.reproduce
 
-    def noted(name, runs, seed, progress):
-        asked.append((name, runs, seed))
-        return original(name, runs, seed, progress)
+    def noted(runs, seed, progress):
+        asked.append((runs, seed))
+        return original(runs, seed, progress)
 
-    monkeypatch.setattr("fuzzytrack.cli.reproduce.rebuild", noted)
+    monkeypatch.setattr(zhang_jiang, "reproduce", noted)
     run("reproduce", "zhang-jiang", "--runs", "7", "--seed", "3")
-    assert asked == [("zhang-jiang", 7, 3)]
+    assert asked == [(7, 3)]

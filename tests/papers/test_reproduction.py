@@ -5,6 +5,7 @@ import math
 import pytest
 
 from fuzzytrack.papers import PAPERS, Reproduction, Row, reproduce
+from fuzzytrack.papers.catalog import reproduce_all
 from fuzzytrack.papers.reproduction import row
 
 
@@ -82,3 +83,20 @@ def test_every_paper_runs_and_draws(paper):
     assert shares[-1] == pytest.approx(1.0)
     for draw in found.pictures.values():
         plt.close(draw())
+
+
+def test_progress_of_several_papers_rises_to_1(monkeypatch):
+    shares = []
+    cost = {"zhang-jiang": 0.3, "kim-lee": 0.1}
+    monkeypatch.setattr("fuzzytrack.papers.catalog._COST", cost)
+
+    def made(runs, seed, progress):
+        progress(0.5)
+        progress(1.0)
+        return (runs, seed)
+
+    for name in ("kim_lee", "zhang_jiang"):
+        monkeypatch.setattr(f"fuzzytrack.papers.{name}.reproduce", made)
+    found = reproduce_all(["zhang-jiang", "kim-lee"], 3, 5, shares.append)
+    assert found == [(3, 5), (3, 5)]
+    assert shares == pytest.approx([0.375, 0.75, 0.875, 1.0])
