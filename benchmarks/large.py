@@ -29,7 +29,7 @@ from benchmarks.large_files import LIVE, Progress, compare, make
 from benchmarks.work import ROOT
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
-from fuzzytrack.io.pieces import ROWS, find_columns, read_pieces, recording_files
+from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.trackers.catalog import make_tracker

@@ -11,8 +11,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from fuzzytrack.io.pieces import recording_files
-from fuzzytrack.io.shuffle import partition_of
+from fuzzytrack.io.recording import recording_files
+from fuzzytrack.recordings.partition_files import partition_of
 
 __all__ = ["LIVE", "compare", "make"]
 

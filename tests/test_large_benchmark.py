@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from fuzzytrack.io.shuffle import partition_of
+from fuzzytrack.recordings.partition_files import partition_of
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTITIONS = 5

@@ -9,7 +9,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import progress, say
 from fuzzytrack.io.files import check_output
-from fuzzytrack.io.tables import table_writer, write_table
+from fuzzytrack.io.table import table_writer, write_table
 from fuzzytrack.simulation.plot_table import plot_columns, truth_columns
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_path
 

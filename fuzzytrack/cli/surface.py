@@ -64,7 +64,7 @@ def _written(
     if csv is None:
         return grid_table(system, points, fixed)
     from fuzzytrack.io.files import check_output
-    from fuzzytrack.io.tables import table_writer, write_table
+    from fuzzytrack.io.table import table_writer, write_table
 
     table_writer(csv)
     check_output(csv)

@@ -15,7 +15,7 @@ from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.io.files import check_output
-from fuzzytrack.io.tables import table_writer
+from fuzzytrack.io.table import table_writer
 from fuzzytrack.io.tracks import Recording, read_tracks
 from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.recordings.track_writer import write_tracks

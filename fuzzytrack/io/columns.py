@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.tables import Kind
+from fuzzytrack.io.table import Kind
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["Columns", "choose_columns"]

@@ -15,8 +15,8 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_file
-from fuzzytrack.io.pieces import Piece
-from fuzzytrack.io.tables import CHUNK, Words, cells, import_pyarrow, table_writer, write_parquet
+from fuzzytrack.io.recording import Piece
+from fuzzytrack.io.table import CHUNK, Words, cells, import_pyarrow, table_writer, write_parquet
 
 __all__ = ["OUTPUTS", "piece_writer"]
 

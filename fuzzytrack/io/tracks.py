@@ -11,7 +11,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.tables import Kind, Progress, Table, Words, read_table
+from fuzzytrack.io.table import Kind, Progress, Table, Words, read_table
 
 __all__ = ["Recording", "Track", "read_tracks"]
 
@@ -72,7 +72,7 @@ def read_tracks(
     Parameters
     ----------
     path : str or path
-        CSV or Parquet; see `fuzzytrack.io.tables.read_table`. Columns that are not named are
+        CSV or Parquet; see `fuzzytrack.io.table.read_table`. Columns that are not named are
         ignored.
     time : str, optional
         Column of time (s); t, t_s, time or time_s unless given.

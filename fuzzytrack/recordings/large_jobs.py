@@ -9,8 +9,8 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
-from fuzzytrack.io.pieces import ROWS, find_columns, read_pieces, recording_files
-from fuzzytrack.io.tables import table_writer
+from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
+from fuzzytrack.io.table import table_writer
 from fuzzytrack.recordings.partitions import check_output_folder, track_partitions
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals

@@ -16,8 +16,8 @@ from typing import TypeVar
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
-from fuzzytrack.io.pieces import ROWS, read_pieces
-from fuzzytrack.io.shuffle import read_partition, write_partitions
+from fuzzytrack.io.recording import ROWS, read_pieces
+from fuzzytrack.recordings.partition_files import read_partition, write_partitions
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress, run_tasks

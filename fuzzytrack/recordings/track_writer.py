@@ -9,7 +9,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.tables import Progress, write_table
+from fuzzytrack.io.table import Progress, write_table
 from fuzzytrack.io.tracks import Recording
 from fuzzytrack.trackers.result import TrackResult
 

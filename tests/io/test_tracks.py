@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
-from fuzzytrack.io import check_output, read_table, read_tracks, tables, write_table
+from fuzzytrack.io import check_output, read_table, read_tracks, table, write_table
 from fuzzytrack.recordings import write_tracks
 
 
@@ -113,7 +113,7 @@ def test_rows_are_lines_also_after_cells_with_line_breaks(tmp_path):
 
 
 def test_long_files_come_in_pieces(tmp_path, monkeypatch):
-    monkeypatch.setattr(tables, "CHUNK", 2)
+    monkeypatch.setattr(table, "CHUNK", 2)
     shares = []
     path = written(tmp_path, "t,x\n0,0\n1,1\n\n\n2,\n3,3\n")
     (track,) = read_tracks(path, progress=shares.append).tracks
@@ -171,7 +171,7 @@ def test_the_input_is_never_overwritten(tmp_path):
 
 def test_failure_leaves_nothing_behind(tmp_path, monkeypatch):
     path = written(tmp_path, "old", "out.csv")
-    monkeypatch.setattr(tables, "CHUNK", 1)
+    monkeypatch.setattr(table, "CHUNK", 1)
 
     class Broken(list):
         def __getitem__(self, key):
@@ -264,7 +264,7 @@ def test_parquet_without_pyarrow(tmp_path, monkeypatch):
 
 
 def test_words_only_table(tmp_path):
-    table = read_table(written(tmp_path, "a,b\nx,1\ny,2\nx,3\n"), lambda names: {"a": "word"})
-    assert table.words["a"].names == ("x", "y")
-    np.testing.assert_array_equal(table.words["a"].codes, [0, 1, 0])
-    np.testing.assert_array_equal(table.rows, [2, 3, 4])
+    found = read_table(written(tmp_path, "a,b\nx,1\ny,2\nx,3\n"), lambda names: {"a": "word"})
+    assert found.words["a"].names == ("x", "y")
+    np.testing.assert_array_equal(found.words["a"].codes, [0, 1, 0])
+    np.testing.assert_array_equal(found.rows, [2, 3, 4])

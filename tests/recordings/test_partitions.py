@@ -7,7 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
-from fuzzytrack.io.pieces import find_columns
+from fuzzytrack.io.recording import find_columns
 from fuzzytrack.recordings import partitions as partitions_module
 from fuzzytrack.recordings.partitions import track_partitions
 

@@ -9,10 +9,10 @@ import pytest
 from fuzzytrack import DataError
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece_writer import piece_writer
-from fuzzytrack.io.pieces import Piece, find_columns, read_pieces, recording_files
-from fuzzytrack.io.shuffle import partition_of, read_partition, write_partitions
-from fuzzytrack.io.tables import Words
+from fuzzytrack.io.recording import Piece, find_columns, read_pieces, recording_files
+from fuzzytrack.io.table import Words
 from fuzzytrack.io.tracks import read_tracks
+from fuzzytrack.recordings.partition_files import partition_of, read_partition, write_partitions
 
 XY = Columns("t", "id", ("x", "y"))
 

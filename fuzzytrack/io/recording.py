@@ -16,7 +16,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.tables import (
+from fuzzytrack.io.table import (
     EXPECTED,
     PARQUET,
     Column,
@@ -206,7 +206,7 @@ def read_pieces(
     Parameters
     ----------
     files : sequence of str
-        CSV or Parquet; see `fuzzytrack.io.tables.read_table`.
+        CSV or Parquet; see `fuzzytrack.io.table.read_table`.
     columns : Columns
         From `find_columns`.
     rows : int

@@ -11,8 +11,8 @@ import numpy as np
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_file
 from fuzzytrack.io.piece_writer import arrow_column, column_writer
-from fuzzytrack.io.pieces import ROWS, Piece
-from fuzzytrack.io.tables import Words, import_pyarrow
+from fuzzytrack.io.recording import ROWS, Piece
+from fuzzytrack.io.table import Words, import_pyarrow
 
 __all__ = ["partition_of", "read_partition", "write_partitions"]
 
