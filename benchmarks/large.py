@@ -28,10 +28,10 @@ import pyarrow.parquet as pq
 from benchmarks.large_files import LIVE, Progress, compare, make
 from benchmarks.work import ROOT
 from fuzzytrack.io.columns import Columns
-from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
 from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.streaming import run_iter
+from fuzzytrack.recordings.track_writer import OUTPUTS, track_writer
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
@@ -76,7 +76,7 @@ def track(folder: str, output: str, tracker: str, rows: str) -> None:
     """Body of that process."""
     files, columns = _recording(Path(folder))
     pieces = read_pieces(files, columns, rows=int(rows), progress=_Shown("tracking"))
-    with piece_writer(output, columns, files) as write:
+    with track_writer(output, columns, files) as write:
         for tracked in run_iter(_tracker(tracker), pieces, keep=OUTPUTS):
             write(tracked.piece, tracked.outputs)
 

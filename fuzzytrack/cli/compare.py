@@ -9,7 +9,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, show, with_error
-from fuzzytrack.cli.track import read
+from fuzzytrack.cli.recording import read_recording
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import make_tracker
@@ -46,7 +46,7 @@ def compare(
         raise ValueError(f"--noise must be > 0, got {noise:g}")
     options.load_plugins(plugin)
     chosen = trackers_named(trackers)
-    recording = read(file, time, id, axes, sort)
+    recording = read_recording(file, time, id, axes, sort)
     tracks = [(track.time, track.plots) for track in recording.tracks]
     with progress("comparing") as watch:
         found = compare_tracks(chosen, tracks, noise, runs, seed, watch)

@@ -15,8 +15,9 @@ from fuzzytrack.errors import CacheWarning, FileError, NoRuleFiresWarning, Plugi
 
 __all__ = ["Command", "Commands", "one_line"]
 
-# A message about arguments begins with their names: "jobs: ...", "jobs and scheduler: ...".
-_ARGUMENTS = re.compile(r"\w+(?: and \w+)*(?=: )")
+# Arguments in a message: at its beginning, as in "jobs: ..." or "jobs and scheduler: ...", and
+# anywhere in backquotes.
+_ARGUMENTS = re.compile(r"^\w+(?: and \w+)*(?=: )|`\w+`")
 
 
 class Command(TyperCommand):
@@ -64,13 +65,16 @@ class Commands(TyperGroup):
 
 
 def _with_options(message: str, parameters: Iterable[Any]) -> str:
-    """Message with the names of arguments at its beginning written as the options for them."""
-    found = _ARGUMENTS.match(message)
-    if found is None:
-        return message
-    options = {p.name: next((o for o in p.opts if o.startswith("--")), p.name) for p in parameters}
-    named = " and ".join(options.get(name, name) for name in found.group().split(" and "))
-    return named + message[found.end() :]
+    """Message with the names of arguments written as the options for them."""
+    options: dict[str, str] = {p.name: o for p in parameters for o in p.opts if o[:2] == "--"}
+
+    def written(found: re.Match[str]) -> str:
+        names = found.group().strip("`").split(" and ")
+        if not options.keys() & names:
+            return found.group()
+        return " and ".join(options.get(name, name) for name in names)
+
+    return _ARGUMENTS.sub(written, message)
 
 
 def one_line(error: Exception) -> str:

@@ -20,8 +20,8 @@ from fuzzytrack.cli.output import output_folder, print_json, progress, say
 from fuzzytrack.cli.pictures import save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.io.table import write_table
-from fuzzytrack.io.tracks import Recording, Track
+from fuzzytrack.io.formats import write_table
+from fuzzytrack.io.recording import Recording, Track
 from fuzzytrack.recordings.track_writer import write_tracks
 from fuzzytrack.simulation.trajectories import turning_target
 from fuzzytrack.testbed.comparison import Comparison

@@ -8,8 +8,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import progress, say
-from fuzzytrack.io.files import check_output
-from fuzzytrack.io.table import table_writer, write_table
+from fuzzytrack.io.formats import check_table, write_table
 from fuzzytrack.simulation.plot_table import plot_columns, truth_columns
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_path
 
@@ -34,8 +33,7 @@ def simulate(
     """
     options.load_plugins(plugin)
     path = str(scenario_path(scenario))
-    table_writer(output)
-    check_output(output, (path,))
+    check_table(output, (path,))
     experiment = load_scenario(scenario)
     columns = truth_columns(experiment, runs) if truth else plot_columns(experiment, runs, seed)
     with progress("writing") as watch:

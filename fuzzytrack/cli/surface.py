@@ -63,11 +63,9 @@ def _written(
     """Table over the grid; written, if there is a file for it."""
     if csv is None:
         return grid_table(system, points, fixed)
-    from fuzzytrack.io.files import check_output
-    from fuzzytrack.io.table import table_writer, write_table
+    from fuzzytrack.io.formats import check_table, write_table
 
-    table_writer(csv)
-    check_output(csv)
+    check_table(csv)
     table = grid_table(system, points, fixed)
     write_table(csv, table)
     return table

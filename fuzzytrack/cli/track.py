@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -14,10 +15,12 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture
-from fuzzytrack.io.files import check_output
-from fuzzytrack.io.table import table_writer
-from fuzzytrack.io.tracks import Recording, read_tracks
+from fuzzytrack.cli.recording import axes_named, read_recording
+from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.formats import check_table
+from fuzzytrack.io.recording import Recording
 from fuzzytrack.recordings.ragged import run_tracks
+from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_writer import write_tracks
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -27,10 +30,7 @@ from fuzzytrack.trackers.state import Gains
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from fuzzytrack.recordings.large_jobs import LargeJob
-    from fuzzytrack.recordings.totals import Totals
-
-__all__ = ["read", "track"]
+__all__ = ["track"]
 
 
 # Bytes of a file above which it is tracked in pieces although nobody asks for it.
@@ -101,49 +101,45 @@ def track(
         from fuzzytrack.recordings.large_jobs import LargeJob
 
         _check_pieces(sort, plot)
-        coordinates = None if axes is None else options.names(axes, "--axes")
-        job = LargeJob.of(file, chosen, sigma, chunk_rows, time=time, id=id, axes=coordinates)
+        job = LargeJob.of(file, chosen, sigma, chunk_rows, time=time, id=id, axes=axes_named(axes))
         with progress("tracking") as watch:
             if apart:
-                totals = job.track_apart(output, jobs, scheduler, partitions, watch)
+                folder = _folder(output)
+                totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
             else:
                 totals = job.track(output, watch)
-        _report(file, job, totals, tracker, output, json)
-        return
-    _look_ahead(file, output, plot)
-    recording = read(file, time, id, axes, sort)
-    with progress("tracking") as watch:
-        plots = [(t.time, t.plots) for t in recording.tracks]
-        results = run_tracks(chosen, plots, sigma, watch)
-    if output is not None:
-        with progress("writing") as watch:
-            write_tracks(output, recording, results, watch)
-    if plot is not None:
-        save_picture(plot, lambda: _draw(recording, results), (file,))
+        run = _Run(job.columns, totals)
+    else:
+        _look_ahead(file, output, plot)
+        recording = read_recording(file, time, id, axes, sort)
+        with progress("tracking") as watch:
+            plots = [(t.time, t.plots) for t in recording.tracks]
+            results = run_tracks(chosen, plots, sigma, watch)
+        if output is not None:
+            with progress("writing") as watch:
+                write_tracks(output, recording, results, watch)
+        if plot is not None:
+            save_picture(plot, lambda: _draw(recording, results), (file,))
+        run = _Run.whole(recording, results, listed=_LISTED if not json else len(results))
     if json:
-        _print_json(recording, results, tracker, {"output": output, "plot": plot})
+        _print_json(run, {"file": file, "tracker": tracker}, {"output": output, "plot": plot})
         return
-    _print_table(recording, results)
+    _print_table(run)
     for written in filter(None, (output, plot)):
         say(f"wrote {written}")
-
-
-def read(file: str, time: str | None, id: str | None, axes: str | None, sort: bool) -> Recording:
-    """Read a recording as the options say, with a progress bar."""
-    chosen = None if axes is None else options.names(axes, "--axes")
-    with progress("reading") as watch:
-        return read_tracks(file, time=time, id=id, axes=chosen, sort=sort, progress=watch)
 
 
 def _is_large(file: str) -> bool:
     return os.path.isfile(file) and os.path.getsize(file) > _LARGE
 
 
+# -------------------------------------------------------------------- checks
+
+
 def _look_ahead(file: str, output: str | None, plot: str | None) -> None:
     """Find out what cannot be written before the work is done."""
     if output is not None:
-        table_writer(output)
-        check_output(output, (file,))
+        check_table(output, (file,))
     if plot is not None:
         check_picture(plot, (file,))
 
@@ -157,87 +153,54 @@ def _check_pieces(sort: bool, plot: str | None) -> None:
             )
 
 
-def _report(
-    file: str, job: LargeJob, totals: Totals, tracker: str, output: str | None, json: bool
-) -> None:
-    """Print totals; single tracks are not kept."""
-    columns = job.columns
-    if json:
-        print_json(
-            {
-                "file": file,
-                "tracker": tracker,
-                "time": columns.time,
-                "axes": columns.axes,
-                "tracks": None,
-                "number": totals.tracks,
-                "total": totals.summary,
-                "output": output,
-                "plot": None,
-            }
-        )
-        return
-    whose = f"all {totals.tracks}" if columns.id else "track"
-    print_table([columns.id, *_HEADS], [[whose, *_row(totals.summary)]])
-    if output is not None:
-        say(f"wrote {output}")
+def _folder(output: str | None) -> str:
+    if output is None:
+        raise ValueError("--jobs and --scheduler need -o DIR, a folder for the tracks")
+    return output
 
 
 # -------------------------------------------------------------------- summary
 
 
-def _summary(results: Sequence[TrackResult]) -> dict[str, Any]:
-    """Numbers about one track, or about several together."""
-    seen = np.concatenate([~np.isnan(r.measured).any(axis=1) for r in results])
-    squares = np.concatenate([(r.innovation**2).sum(axis=1) for r in results])
-    return {
-        "plots": int(seen.sum()),
-        "missed": int((~seen).sum()),
-        "duration": float(sum(r.time[-1] - r.time[0] for r in results)),
-        "innovation_rms": math.sqrt(_mean(squares)),
-        "alpha": _mean(np.concatenate([r.gains.alpha for r in results])),
-        "beta": _mean(np.concatenate([r.gains.beta for r in results])),
-    }
+@dataclass(frozen=True)
+class _Run:
+    """What is printed of a run: its columns, its totals, and those of single tracks if listed."""
+
+    columns: Columns
+    total: Totals
+    tracks: tuple[tuple[str, Totals], ...] | None = None
+
+    @classmethod
+    def whole(cls, recording: Recording, results: Sequence[TrackResult], listed: int) -> _Run:
+        """Run of a whole recording; at most so many tracks are listed one by one."""
+        tracks = None
+        if len(results) <= listed:
+            pairs = zip(recording.tracks, results, strict=True)
+            tracks = tuple((track.id, Totals.of([result])) for track, result in pairs)
+        return cls(recording.columns, Totals.of(results), tracks)
 
 
-def _mean(values: Array) -> float:
-    known = values[~np.isnan(values)]
-    return float(known.mean()) if known.size else math.nan
+def _print_json(run: _Run, read: dict[str, Any], written: dict[str, Any]) -> None:
+    columns = run.columns
+    tracks: dict[str, Any] = {"tracks": None, "number": run.total.tracks}
+    if run.tracks is not None:
+        rows = [{"id": id if columns.id else None, **of.summary} for id, of in run.tracks]
+        tracks = {"tracks": rows}
+    total = {"total": run.total.summary}
+    print_json({**read, "time": columns.time, "axes": columns.axes, **tracks, **total, **written})
 
 
-def _print_json(
-    recording: Recording, results: Sequence[TrackResult], tracker: str, written: dict[str, Any]
-) -> None:
-    rows = [
-        {"id": track.id if recording.id else None, **_summary([result])}
-        for track, result in zip(recording.tracks, results, strict=True)
-    ]
-    print_json(
-        {
-            "file": recording.file,
-            "tracker": tracker,
-            "time": recording.time,
-            "axes": recording.axes,
-            "tracks": rows,
-            "total": _summary(results),
-            **written,
-        }
-    )
-
-
-def _print_table(recording: Recording, results: Sequence[TrackResult]) -> None:
-    many = len(results) > 1
-    rows: list[list[str]] = []
-    if len(results) <= _LISTED:
-        for track, result in zip(recording.tracks, results, strict=True):
-            rows.append([track.id if recording.id else "track", *_row(_summary([result]))])
-    if many:
+def _print_table(run: _Run) -> None:
+    columns = run.columns
+    rows = [[id if columns.id else "track", *_row(of)] for id, of in run.tracks or ()]
+    if len(rows) != 1:
         rows += [[]] if rows else []
-        rows.append([f"all {len(results)}", *_row(_summary(results))])
-    print_table([recording.id, *_HEADS], rows)
+        rows.append([f"all {run.total.tracks}" if columns.id else "track", *_row(run.total)])
+    print_table([columns.id, *_HEADS], rows)
 
 
-def _row(summary: dict[str, Any]) -> list[str]:
+def _row(totals: Totals) -> list[str]:
+    summary = totals.summary
     numbers = [show(summary[key], 4) for key in ("innovation_rms", "alpha", "beta")]
     return [
         str(summary["plots"]),

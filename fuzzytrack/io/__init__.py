@@ -1,21 +1,34 @@
 """Files of plots and tracks: CSV, and Parquet with the extra ``parquet``."""
 
+from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import check_output, whole_file
-from fuzzytrack.io.recording import Piece, find_columns, read_pieces, recording_files
-from fuzzytrack.io.table import Table, read_table, write_table
-from fuzzytrack.io.tracks import Recording, Track, read_tracks
+from fuzzytrack.io.formats import check_table, read_table, table_writer, write_table
+from fuzzytrack.io.recording import (
+    Piece,
+    Recording,
+    Track,
+    find_columns,
+    read_pieces,
+    read_tracks,
+    recording_files,
+)
+from fuzzytrack.io.table import Table, Words
 
 __all__ = [
+    "Columns",
     "Piece",
     "Recording",
     "Table",
     "Track",
+    "Words",
     "check_output",
+    "check_table",
     "find_columns",
     "read_pieces",
     "read_table",
     "read_tracks",
     "recording_files",
+    "table_writer",
     "whole_file",
     "write_table",
 ]

@@ -47,7 +47,7 @@ def choose_columns(
     id: str | None,
     axes: Sequence[str] | None,
 ) -> Columns:
-    """Find the columns of a recording, by what the user said or by their usual names.
+    """Find the columns of a recording, by the names given or by their usual names.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def choose_columns(
     _check_header(names, file)
     columns = Columns(
         _time_column(names, time, file),
-        "" if id is None else _known(names, id, "--id", file),
+        "" if id is None else _known(names, id, "id", file),
         _axes_columns(names, axes, file),
     )
     every = [columns.time, *filter(None, [columns.id]), *columns.axes]
@@ -79,27 +79,27 @@ def choose_columns(
 
 
 def _check_header(names: tuple[str, ...], file: str) -> None:
-    """Say so where the first row cannot be one of names."""
+    """Refuse a first row that is not separated by commas."""
     if len(names) == 1:
         for mark, word in ((";", "semicolons"), ("\t", "tabs")):
             if mark in names[0]:
                 raise DataError(f"{file}: row 1: separated by {word}; expected commas")
 
 
-def _known(names: tuple[str, ...], name: str, option: str, file: str) -> str:
+def _known(names: tuple[str, ...], name: str, argument: str, file: str) -> str:
     if name not in names:
-        raise DataError(f"{file}: {option}: no column {name!r}{suggestion(name, names)}")
+        raise DataError(f"{file}: `{argument}`: no column {name!r}{suggestion(name, names)}")
     return name
 
 
 def _time_column(names: tuple[str, ...], time: str | None, file: str) -> str:
     if time is not None:
-        return _known(names, time, "--time", file)
+        return _known(names, time, "time", file)
     for name in TIMES:
         if name in names:
             return name
     raise DataError(
-        f"{file}: no column {_either(TIMES)}; name the column of time with --time; "
+        f"{file}: no column {_either(TIMES)}; name the column of time with `time`; "
         f"there are {', '.join(names)}"
     )
 
@@ -107,14 +107,14 @@ def _time_column(names: tuple[str, ...], time: str | None, file: str) -> str:
 def _axes_columns(names: tuple[str, ...], axes: Sequence[str] | None, file: str) -> tuple[str, ...]:
     if axes is not None:
         if not axes:
-            raise DataError(f"{file}: --axes: needs at least one column")
-        return tuple(_known(names, name, "--axes", file) for name in axes)
+            raise DataError(f"{file}: `axes`: needs at least one column")
+        return tuple(_known(names, name, "axes", file) for name in axes)
     for group in AXES:
         found = tuple(name for name in group if name in names)
         if found:
             return found
     raise DataError(
-        f"{file}: no columns x, y or x_m, y_m; name those of position with --axes; "
+        f"{file}: no columns x, y or x_m, y_m; name those of position with `axes`; "
         f"there are {', '.join(names)}"
     )
 

@@ -1,13 +1,11 @@
-"""Recordings in pieces, for files larger than memory."""
+"""Recordings: the plots of tracks in files, read piece by piece or as whole tracks."""
 
 from __future__ import annotations
 
-import csv
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,30 +14,24 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.table import (
-    EXPECTED,
-    PARQUET,
-    Column,
-    Kind,
-    Progress,
-    Table,
-    Words,
-    checked_names,
-    chunks,
-    import_pyarrow,
-    is_number,
-    make_table,
-    not_utf8,
-)
+from fuzzytrack.io.formats import PARQUET, Source, open_table
+from fuzzytrack.io.table import Table, Words, no_rows, silent
+from fuzzytrack.tasks import Progress
 
-__all__ = ["ROWS", "Piece", "find_columns", "read_pieces", "recording_files"]
+__all__ = [
+    "ROWS",
+    "Piece",
+    "Recording",
+    "Track",
+    "find_columns",
+    "read_pieces",
+    "read_tracks",
+    "recording_files",
+]
 
 
 #: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
 ROWS = 250_000
-
-# Bytes of a compressed column that are read at a time, however large the row group.
-_BUFFER = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +91,53 @@ class Piece:
         return cls(words, times, positions, np.arange(1, len(times) + 1))
 
 
+@dataclass(frozen=True, eq=False)
+class Track:
+    """The plots of one track.
+
+    Attributes
+    ----------
+    id : str
+        Identity, as the file spells it; empty if the file names none.
+    time : ndarray, shape (n_steps,)
+        Times (s), increasing.
+    plots : ndarray, shape (n_steps, n_axes)
+        Positions, NaN where missed.
+    """
+
+    id: str
+    time: Array
+    plots: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """The tracks of a file, in order of first appearance.
+
+    Attributes
+    ----------
+    file : str
+        Name of the file.
+    time, id : str
+        Names of the columns of time and of identity; the latter empty if there is none.
+    axes : tuple of str
+        Names of the columns of position.
+    tracks : tuple of Track
+        At least one, with at least one plot each.
+    """
+
+    file: str
+    time: str
+    id: str
+    axes: tuple[str, ...]
+    tracks: tuple[Track, ...]
+
+    @property
+    def columns(self) -> Columns:
+        """Which columns of the file are what."""
+        return Columns(self.time, self.id, self.axes)
+
+
 # -------------------------------------------------------------------- files and columns
 
 
@@ -129,14 +168,14 @@ def find_columns(
     id: str | None = None,
     axes: Sequence[str] | None = None,
 ) -> Columns:
-    """Find the columns of a recording, and whether all of its files have them.
+    """Find the columns of a recording, and check that all of its files have them.
 
     Parameters
     ----------
     files : sequence of str
-        At least one; several must be Parquet.
+        At least one.
     time, id, axes
-        As for `fuzzytrack.io.read_tracks`.
+        As for `read_tracks`.
 
     Raises
     ------
@@ -146,12 +185,12 @@ def find_columns(
         If a file cannot be read.
     """
     first = files[0]
-    if len(files) == 1 and not first.lower().endswith(PARQUET):
-        return choose_columns(_csv_names(first), first, time, id, axes)
-    types = _parquet_types(first)
+    with open_table(first) as source:
+        types = source.types
     columns = choose_columns(tuple(types), first, time, id, axes)
     for file in files[1:]:
-        others = _parquet_types(file)
+        with open_table(file) as source:
+            others = source.types
         for name in columns.kinds:
             if name not in others:
                 raise DataError(f"{file}: no column {name!r}, which {first} has")
@@ -163,34 +202,6 @@ def find_columns(
     return columns
 
 
-def _csv_names(file: str) -> tuple[str, ...]:
-    with open(file, encoding="utf-8-sig", newline="") as stream:
-        try:
-            return _header(csv.reader(stream, strict=True), file)
-        except UnicodeDecodeError:
-            raise not_utf8(file) from None
-        except csv.Error as error:
-            raise DataError(f"{file}: row 1: not CSV: {error}") from None
-
-
-def _header(reader: Any, file: str) -> tuple[str, ...]:
-    header = next((row for row in reader if row), None)
-    if header is None:
-        raise DataError(f"{file}: is empty; expected a row of column names, then data")
-    return checked_names([name.strip() for name in header], file)
-
-
-def _parquet_types(file: str) -> dict[str, Any]:
-    arrow = import_pyarrow(file)
-    with open(file, "rb") as stream:
-        try:
-            schema = arrow.parquet.read_schema(stream)
-        # Of a page that is broken, pyarrow says so by an OSError.
-        except (arrow.ArrowException, OSError) as error:
-            raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
-    return dict(zip(checked_names(schema.names, file), schema.types, strict=True))
-
-
 # -------------------------------------------------------------------- pieces
 
 
@@ -198,7 +209,7 @@ def read_pieces(
     files: Sequence[str],
     columns: Columns,
     *,
-    rows: int = ROWS,
+    rows: int | None = ROWS,
     progress: Progress | None = None,
 ) -> Iterator[Piece]:
     """Read a recording piece by piece, file by file.
@@ -206,11 +217,11 @@ def read_pieces(
     Parameters
     ----------
     files : sequence of str
-        CSV or Parquet; see `fuzzytrack.io.table.read_table`.
+        CSV or Parquet; see `fuzzytrack.io.formats.open_table`.
     columns : Columns
         From `find_columns`.
-    rows : int
-        Rows of a piece, at most.
+    rows : int or None
+        Rows of a piece, at most; None makes each file one piece.
     progress : callable, optional
         Called with the share that has been read.
 
@@ -231,7 +242,7 @@ def read_pieces(
     Holds one piece, and of a Parquet file about a megabyte a column, at a time, however large the
     row groups are.
     """
-    if rows < 1:
+    if rows is not None and rows < 1:
         raise ValueError(f"rows must be at least 1, got {rows}")
     sizes = [os.path.getsize(file) for file in files]
     total = max(1, sum(sizes))
@@ -242,16 +253,15 @@ def read_pieces(
             if progress is not None:
                 progress((before + share * size) / total)
 
-        read = _parquet_pieces if file.lower().endswith(PARQUET) else _csv_pieces
-        for table in read(file, columns.kinds, rows, watch):
-            yield _piece(table, columns)
+        with open_table(file) as source:
+            for table in source.tables(columns.kinds, rows, watch):
+                yield _piece(table, columns)
         before += size
 
 
 def _piece(table: Table, columns: Columns) -> Piece:
-    nobody = Words(("",), np.zeros(len(table.rows), dtype=np.int64))
     return Piece(
-        table.words[columns.id] if columns.id else nobody,
+        table.words[columns.id] if columns.id else Words.same("", len(table.rows)),
         table.numbers[columns.time],
         np.stack([table.numbers[name] for name in columns.axes], axis=1),
         table.rows,
@@ -259,112 +269,98 @@ def _piece(table: Table, columns: Columns) -> Piece:
     )
 
 
-def _csv_pieces(
-    file: str, kinds: Mapping[str, Kind], rows: int, progress: Progress
-) -> Iterator[Table]:
-    with open(file, encoding="utf-8-sig", newline="") as stream:
-        size = max(1, os.fstat(stream.fileno()).st_size)
-        reader = csv.reader(stream, strict=True)
-        try:
-            names = _header(reader, file)
-            for table in _csv_tables(file, reader, names, kinds, rows):
-                yield table
-                progress(min(stream.buffer.tell() / size, 1.0))  # type: ignore[attr-defined]
-        except UnicodeDecodeError:
-            raise not_utf8(file) from None
-        except csv.Error as error:
-            raise DataError(f"{file}: row {reader.line_num}: not CSV: {error}") from None
+# -------------------------------------------------------------------- tracks
 
 
-def _csv_tables(
-    file: str, reader: Any, names: tuple[str, ...], kinds: Mapping[str, Kind], rows: int
-) -> Iterator[Table]:
-    places = [names.index(name) for name in kinds]
-    columns: list[Column] = []
-    numbers: list[int] = []
-    for found, cells in chunks(file, reader, len(names)):
-        for start in range(0, len(found), rows):
-            part = found[start : start + rows]
-            if len(numbers) + len(part) > rows:
-                yield make_table(file, columns, np.array(numbers))
-                numbers = []
-            if not numbers:
-                columns = [Column(file, name, kind) for name, kind in kinds.items()]
-            for column, place in zip(columns, places, strict=True):
-                column.take(cells[place][start : start + rows], part)
-            numbers += part
-    if numbers:
-        yield make_table(file, columns, np.array(numbers))
+def read_tracks(
+    path: PathLike,
+    *,
+    time: str | None = None,
+    id: str | None = None,
+    axes: Sequence[str] | None = None,
+    sort: bool = False,
+    progress: Progress | None = None,
+) -> Recording:
+    """Read the plots of tracks.
+
+    Parameters
+    ----------
+    path : str or path
+        CSV or Parquet; see `fuzzytrack.io.formats.open_table`. Columns that are not named are
+        ignored.
+    time : str, optional
+        Column of time (s); t, t_s, time or time_s unless given.
+    id : str, optional
+        Column of the identity of tracks, kept as text; one track unless given.
+    axes : sequence of str, optional
+        Columns of position; x, y, z or x_m, y_m, z_m, those that there are, unless given. An empty
+        cell, ``nan`` or ``NA`` is a missed plot.
+    sort : bool
+        Whether to put plots in order of time.
+    progress : callable, optional
+        Called with the share of the file that has been read.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    DataError
+        If the file does not hold such tracks: names row, column, value and what was expected.
+    OSError
+        If it cannot be read.
+    """
+    file = os.fspath(path)
+    with open_table(file) as source:
+        # A file that is a pipe can be opened once only.
+        columns = choose_columns(tuple(source.types), file, time, id, axes)
+        piece = _whole(source, columns, progress or silent)
+    tracks = _tracks(piece, columns, sort)
+    return Recording(file, columns.time, columns.id, columns.axes, tracks)
 
 
-def _parquet_pieces(
-    file: str, kinds: Mapping[str, Kind], rows: int, progress: Progress
-) -> Iterator[Table]:
-    arrow = import_pyarrow(file)
-    with open(file, "rb") as stream:
-        try:
-            source = arrow.parquet.ParquetFile(stream, buffer_size=_BUFFER, pre_buffer=False)
-            total = max(1, source.metadata.num_rows)
-            first = 1
-            for batch in source.iter_batches(rows, columns=list(kinds)):
-                if not batch.num_rows:
-                    continue
-                yield _batch_table(file, batch, kinds, np.arange(first, first + batch.num_rows))
-                first += batch.num_rows
-                progress((first - 1) / total)
-        # Of a page that is broken, pyarrow says so by an OSError.
-        except (arrow.ArrowException, OSError) as error:
-            raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
+def _whole(source: Source, columns: Columns, progress: Progress) -> Piece:
+    """Read a whole file as one piece."""
+    for table in source.tables(columns.kinds, None, progress):
+        return _piece(table, columns)
+    raise no_rows(source.file)
 
 
-def _batch_table(
-    file: str, batch: Any, kinds: Mapping[str, Kind], rows: NDArray[np.int64]
-) -> Table:
-    arrow = import_pyarrow(file)
-    numbers: dict[str, Array] = {}
-    words: dict[str, Words] = {}
-    for name, kind in kinds.items():
-        column, values = Column(file, name, kind), batch.column(name)
-        if kind == "word":
-            words[name] = _words(column, values, rows)
-        elif is_number(arrow, values.type):
-            numbers[name] = _finite(column, values, rows)
-        else:
-            column.take(["" if v is None else str(v) for v in values.to_pylist()], rows.tolist())
-            numbers[name] = np.concatenate(column.parts)
-    return Table(file, rows, numbers, words)
+def _tracks(piece: Piece, columns: Columns, sort: bool) -> tuple[Track, ...]:
+    """Tracks of a piece, in order of first appearance."""
+    ids, times = piece.ids, piece.time
+    # Stable: the order of the file within a track.
+    order = np.lexsort((times, ids.codes)) if sort else np.argsort(ids.codes, kind="stable")
+    codes, times = ids.codes[order], times[order]
+    wrong = np.flatnonzero((np.diff(times) <= 0) & (np.diff(codes) == 0)) + 1
+    if len(wrong):
+        first = wrong[np.argmin(piece.rows[order[wrong]])]
+        raise _time_error(piece, columns, order[first - 1], order[first])
+    plots = piece.plots[order]
+    ends = np.searchsorted(codes, np.arange(len(ids.names) + 1))
+    return tuple(
+        Track(name, times[start:end], plots[start:end])
+        for name, start, end in zip(ids.names, ends[:-1], ends[1:], strict=True)
+    )
 
 
-def _finite(column: Column, values: Any, rows: NDArray[np.int64]) -> Array:
-    found: Array = values.to_numpy(zero_copy_only=False).astype(np.float64)
-    bad = np.isinf(found) if column.kind == "gaps" else ~np.isfinite(found)
-    if bad.any():
-        place = int(np.argmax(bad))
-        raise column.error(int(rows[place]), str(found[place]), EXPECTED[column.kind])
-    return found
-
-
-def _words(column: Column, values: Any, rows: NDArray[np.int64]) -> Words:
-    """Words of a column; only the different ones become Python's."""
-    if values.null_count:
-        raise column.error(int(rows[int(np.argmax(values.is_null()))]), "", "some text")
-    encoded = values.dictionary_encode()
-    names = _texts(encoded.dictionary)
-    codes = encoded.indices.to_numpy(zero_copy_only=False).astype(np.int64)
-    if len(set(names)) < len(names):
-        # Words that differ by blanks at their ends only are one.
-        position: dict[str, int] = {}
-        codes = np.array([position.setdefault(name, len(position)) for name in names])[codes]
-        names = list(position)
-    if "" in names:
-        raise column.error(int(rows[np.argmax(codes == names.index(""))]), "", "some text")
-    return Words(tuple(names), codes)
-
-
-def _texts(values: Any) -> list[str]:
-    from pyarrow import compute, string, types
-
-    if types.is_integer(values.type) or types.is_string(values.type):
-        found: list[str] = compute.utf8_trim_whitespace(values.cast(string())).to_pylist()
-        return found
-    return [str(value).strip() for value in values.to_pylist()]
+def _time_error(piece: Piece, columns: Columns, before: int, here: int) -> DataError:
+    """Complaint about the time of a row that is not later than that of the row before."""
+    times, rows = piece.time, piece.rows
+    id = piece.ids[here]
+    whose = f" (id {id!r})" if id else ""
+    if times[here] == times[before]:
+        # Several tracks in one file look like this when they are not told apart.
+        mend = "" if id else "; if these are several tracks, name the column of their id (`id`)"
+        what = f"repeats that of row {rows[before]}"
+        wanted = f"expected times that differ{mend}"
+    else:
+        what = f"is earlier than {times[before]:.15g} in row {rows[before]}"
+        wanted = "expected increasing times; `sort` puts them in order"
+        if not id:
+            wanted += ", and `id` tells several tracks apart"
+    return DataError(
+        f"{piece.file}: row {rows[here]}, column {columns.time}: time {times[here]:.15g}{whose} "
+        f"{what}; {wanted}"
+    )

@@ -1,56 +1,72 @@
-"""Tables: named columns of numbers and words, from and to CSV and Parquet."""
+"""Tables: named columns of numbers and words, and the checks of their cells.
+
+What all formats of files share; `fuzzytrack.io.csv` and `fuzzytrack.io.parquet` read and write it.
+"""
 
 from __future__ import annotations
 
-import csv
 import math
-import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import accumulate, islice
-from pathlib import Path
-from typing import IO, Any, Literal
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.files import PathLike, whole_file
-from fuzzytrack.tasks import Progress
 
-__all__ = ["Kind", "Progress", "Table", "Words", "read_table", "write_table"]
+__all__ = ["Column", "Kind", "Table", "Values", "Words", "checked_names", "no_rows", "silent"]
 
-
-#: What a column must hold: a number in every row, numbers and gaps, or words.
+#: What a column that is read must hold: a number in every row, numbers and gaps, or words.
 Kind = Literal["number", "gaps", "word"]
-#: Called now and then with the share of the work that is done.
 
 # What stands for a missing number, in lower case.
-GAPS = ("", "nan", "na")
-EXPECTED = {
+_GAPS = ("", "nan", "na")
+_EXPECTED = {
     "number": "a finite number",
     "gaps": "a finite number, or an empty cell or nan for a missed plot",
+    "word": "some text",
 }
-# Rows at a time; many more at once keep the garbage collector busy.
-CHUNK = 5_000
-PARQUET = (".parquet", ".pq")
 
 
 @dataclass(frozen=True, eq=False)
-class Words:
-    """Column of words, each kept once.
+class Words(Sequence[str]):
+    """Column of words, each different word kept once.
 
     Attributes
     ----------
     names : tuple of str
         The different words, in order of first appearance.
-    codes : ndarray of int
+    codes : ndarray of int, shape (n_rows,)
         For each row the position of its word in `names`.
     """
 
     names: tuple[str, ...]
     codes: NDArray[np.int64]
+
+    @classmethod
+    def same(cls, word: str, count: int) -> Words:
+        """Column of one word in all rows."""
+        return cls((word,), np.zeros(count, dtype=np.int64))
+
+    def __len__(self) -> int:
+        """Rows of the column."""
+        return len(self.codes)
+
+    @overload
+    def __getitem__(self, key: int) -> str: ...
+    @overload
+    def __getitem__(self, key: slice) -> list[str]: ...
+    def __getitem__(self, key: int | slice) -> str | list[str]:
+        """Word of a row, or words of some rows."""
+        if isinstance(key, slice):
+            return [self.names[code] for code in self.codes[key].tolist()]
+        return self.names[int(self.codes[key])]
+
+
+#: Columns to be written, by name and all of one length; NaN stands for an empty cell.
+Values = Mapping[str, Sequence[str] | NDArray[Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,110 +90,83 @@ class Table:
     numbers: dict[str, Array]
     words: dict[str, Words]
 
-
-def read_table(
-    path: PathLike,
-    wanted: Callable[[tuple[str, ...]], Mapping[str, Kind]],
-    progress: Progress | None = None,
-) -> Table:
-    """Read columns of a CSV or Parquet file.
-
-    Parameters
-    ----------
-    path : str or path
-        Parquet if it ends in ``.parquet`` or ``.pq``, otherwise CSV: UTF-8, separated by commas,
-        names in the first row.
-    wanted : callable
-        From the names of all columns to those wanted, with what they must hold. May raise.
-    progress : callable, optional
-        Called with the share of the file that has been read.
-
-    Returns
-    -------
-    Table
-        At least one row.
-
-    Raises
-    ------
-    DataError
-        If the file is no such table; names row and column.
-    OSError
-        If it cannot be read.
-    """
-    file = os.fspath(path)
-    read = _read_parquet if file.lower().endswith(PARQUET) else _read_csv
-    table = read(file, wanted, progress or _silent)
-    if not len(table.rows):
-        raise DataError(f"{file}: holds no rows, only column names")
-    return table
-
-
-def write_table(
-    path: PathLike,
-    columns: Mapping[str, Sequence[str] | Array],
-    inputs: tuple[PathLike, ...] = (),
-    progress: Progress | None = None,
-) -> None:
-    """Write a CSV or Parquet file, whole or not at all.
-
-    Parameters
-    ----------
-    path : str or path
-        Parquet if it ends in ``.parquet`` or ``.pq``, CSV if in ``.csv`` or ``.txt``.
-    columns : mapping of str to ndarray or sequence of str
-        All of one length. NaN becomes an empty cell.
-    inputs : tuple of str or path
-        Files that must not be overwritten.
-    progress : callable, optional
-        Called with the share that has been written.
-
-    Raises
-    ------
-    DataError
-        If the suffix is another, or the file is one of the inputs.
-    OSError
-        If the file cannot be written.
-    """
-    write = table_writer(path)
-    with whole_file(path, inputs) as draft:
-        write(draft, columns, progress or _silent)
-
-
-def table_writer(path: PathLike) -> Callable[[Path, Mapping[str, Any], Progress], None]:
-    """Find the function that writes a file of this name; DataError if there is none."""
-    suffix = Path(path).suffix.lower()
-    if suffix in PARQUET:
-        import_pyarrow(os.fspath(path))
-        return write_parquet
-    if suffix in (".csv", ".txt"):
-        return _write_csv
-    raise DataError(f"{path}: cannot write {suffix or 'without suffix'}; .csv or .parquet")
-
-
-def _silent(share: float) -> None:
-    """Progress that nobody watches."""
-
-
-# -------------------------------------------------------------------- columns
+    @classmethod
+    def of(cls, file: str, columns: Sequence[Column], rows: NDArray[np.int64]) -> Table:
+        """Table of columns that have been read."""
+        numbers, words = {}, {}
+        for column in columns:
+            if column.kind == "word":
+                words[column.name] = column.words()
+            else:
+                numbers[column.name] = column.numbers()
+        return cls(file, rows, numbers, words)
 
 
 class Column:
-    """A wanted column that grows chunk by chunk."""
+    """A column that is being read, part by part, with the checks of its cells.
+
+    Parameters
+    ----------
+    file, name : str
+        File and column, for messages.
+    kind : {"number", "gaps", "word"}
+        What its cells must hold.
+    """
 
     def __init__(self, file: str, name: str, kind: Kind) -> None:
         self.file, self.name, self.kind = file, name, kind
-        self.parts: list[NDArray[Any]] = []
-        self.codes: dict[str, int] = {}
+        self._parts: list[NDArray[Any]] = []
+        self._codes: dict[str, int] = {}
 
-    def take(self, cells: Sequence[str], rows: Sequence[int]) -> None:
+    def numbers(self) -> Array:
+        """All numbers read so far."""
+        return np.concatenate(self._parts) if self._parts else np.empty(0)
+
+    def words(self) -> Words:
+        """All words read so far."""
+        codes = np.concatenate(self._parts) if self._parts else np.empty(0)
+        return Words(tuple(self._codes), codes.astype(np.int64))
+
+    def take_cells(self, cells: Sequence[str], rows: Sequence[int]) -> None:
+        """Add cells of text.
+
+        Raises
+        ------
+        DataError
+            If one does not hold what it must; names its row.
+        """
         if self.kind == "word":
             words = list(map(str.strip, cells))
             if not all(words):
-                raise self.error(rows[words.index("")], "", "some text")
-            codes = self.codes
-            self.parts.append(np.array([codes.setdefault(word, len(codes)) for word in words]))
+                raise self.error(rows[words.index("")], "")
+            codes = self._codes
+            self._parts.append(np.array([codes.setdefault(word, len(codes)) for word in words]))
             return
-        self.parts.append(self._numbers(cells, rows))
+        self._parts.append(self._numbers(cells, rows))
+
+    def take_numbers(self, values: Array, rows: NDArray[np.int64]) -> None:
+        """Add cells of numbers, NaN in the gaps; raises as `take_cells`."""
+        bad = np.isinf(values) if self.kind == "gaps" else ~np.isfinite(values)
+        if bad.any():
+            place = int(np.argmax(bad))
+            raise self.error(int(rows[place]), str(values[place]))
+        self._parts.append(values)
+
+    def take_words(
+        self, names: Sequence[str], codes: NDArray[np.int64], rows: NDArray[np.int64]
+    ) -> None:
+        """Add words: the different ones, and for each row which; raises as `take_cells`.
+
+        Every one of the names is used; a negative code stands for an empty cell.
+        """
+        words = [name.strip() for name in names]
+        # The last place is that of negative codes.
+        empty = np.array([*(not word for word in words), True])[codes]
+        if empty.any():
+            raise self.error(int(rows[int(np.argmax(empty))]), "")
+        known = self._codes
+        position = np.array([known.setdefault(word, len(known)) for word in words], dtype=np.int64)
+        self._parts.append(position[codes])
 
     def _numbers(self, cells: Sequence[str], rows: Sequence[int]) -> Array:
         plain = "".join(cells)
@@ -194,7 +183,7 @@ class Column:
 
     def _number(self, cell: str, row: int) -> float:
         text = cell.strip()
-        if self.kind == "gaps" and text.lower() in GAPS:
+        if self.kind == "gaps" and text.lower() in _GAPS:
             return math.nan
         if text.isascii() and "_" not in text:
             try:
@@ -204,28 +193,25 @@ class Column:
             else:
                 if math.isfinite(value):
                     return value
-        raise self.error(row, cell, EXPECTED[self.kind])
+        raise self.error(row, cell)
 
-    def error(self, row: int, cell: str, expected: str) -> DataError:
+    def error(self, row: int, cell: str) -> DataError:
+        """Complaint about a cell that does not hold what it must."""
         shown = repr(cell if len(cell) <= 40 else cell[:40] + "…") if cell else "an empty cell"
         return DataError(
-            f"{self.file}: row {row}, column {self.name}: {shown}; expected {expected}"
+            f"{self.file}: row {row}, column {self.name}: {shown}; expected {_EXPECTED[self.kind]}"
         )
 
 
-def make_table(file: str, columns: Sequence[Column], rows: NDArray[np.int64]) -> Table:
-    numbers, words = {}, {}
-    for column in columns:
-        values = np.concatenate(column.parts) if column.parts else np.empty(0)
-        if column.kind == "word":
-            words[column.name] = Words(tuple(column.codes), values.astype(np.int64))
-        else:
-            numbers[column.name] = values
-    return Table(file, rows, numbers, words)
-
-
 def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:
-    if all(map(_numeric, names)):
+    """Names of the columns of a file.
+
+    Raises
+    ------
+    DataError
+        If they are numbers, or two are the same.
+    """
+    if all(map(_is_numeric, names)):
         raise DataError(f"{file}: row 1: holds numbers; expected the names of the columns")
     doubled = sorted({name for name in names if name and names.count(name) > 1})
     if doubled:
@@ -233,7 +219,7 @@ def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _numeric(name: str) -> bool:
+def _is_numeric(name: str) -> bool:
     try:
         float(name)
     except ValueError:
@@ -241,174 +227,10 @@ def _numeric(name: str) -> bool:
     return True
 
 
-# -------------------------------------------------------------------- CSV
+def no_rows(file: str) -> DataError:
+    """Complaint about a file that holds nothing but the names of its columns."""
+    return DataError(f"{file}: holds no rows, only column names")
 
 
-def _read_csv(
-    file: str, wanted: Callable[[tuple[str, ...]], Mapping[str, Kind]], progress: Progress
-) -> Table:
-    with open(file, encoding="utf-8-sig", newline="") as stream:
-        reader = csv.reader(stream, strict=True)
-        try:
-            return _parse_csv(file, stream, reader, wanted, progress)
-        except UnicodeDecodeError:
-            raise not_utf8(file) from None
-        except csv.Error as error:
-            raise DataError(f"{file}: row {reader.line_num}: not CSV: {error}") from None
-
-
-def _parse_csv(
-    file: str,
-    stream: IO[str],
-    reader: Any,
-    wanted: Callable[[tuple[str, ...]], Mapping[str, Kind]],
-    progress: Progress,
-) -> Table:
-    header = next((row for row in reader if row), None)
-    if header is None:
-        raise DataError(f"{file}: is empty; expected a row of column names, then data")
-    names = checked_names([name.strip() for name in header], file)
-    columns = [Column(file, name, kind) for name, kind in wanted(names).items()]
-    places = [names.index(column.name) for column in columns]
-    size = os.fstat(stream.fileno()).st_size
-    numbers: list[NDArray[np.int64]] = []
-    for rows, cells in chunks(file, reader, len(names)):
-        for column, place in zip(columns, places, strict=True):
-            column.take(cells[place], rows)
-        numbers.append(np.array(rows))
-        if size:
-            progress(min(stream.buffer.tell() / size, 1.0))  # type: ignore[attr-defined]
-    return make_table(file, columns, np.concatenate(numbers) if numbers else np.empty(0, dtype=int))
-
-
-def chunks(
-    file: str, reader: Any, width: int
-) -> Iterator[tuple[Sequence[int], list[tuple[str, ...]]]]:
-    """Row numbers and columns of some rows at a time; blank lines are left out."""
-    before = reader.line_num
-    while cells := list(islice(reader, CHUNK)):
-        rows: Sequence[int] = range(before + 1, reader.line_num + 1)
-        if len(rows) != len(cells):  # cells with line breaks
-            lines = (1 + sum(cell.count("\n") for cell in row) for row in cells)
-            rows = list(accumulate(lines, initial=before))[1:]
-        before = reader.line_num
-        widths = set(map(len, cells))
-        if 0 in widths:
-            kept = [k for k, row in enumerate(cells) if row]
-            rows, cells = [rows[k] for k in kept], [cells[k] for k in kept]
-            widths.discard(0)
-        if not widths <= {width}:
-            wrong = next(k for k, row in enumerate(cells) if len(row) != width)
-            raise DataError(
-                f"{file}: row {rows[wrong]}: {_many(len(cells[wrong]), 'cell')}; expected {width}, "
-                "as in the header"
-            )
-        if cells:
-            yield rows, list(zip(*cells, strict=True))
-
-
-def _many(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
-
-
-def not_utf8(file: str) -> DataError:
-    with open(file, "rb") as stream:
-        for number, line in enumerate(stream, 1):
-            try:
-                line.decode("utf-8")
-            except UnicodeDecodeError as error:
-                byte = line[error.start]
-                return DataError(
-                    f"{file}: row {number}: byte 0x{byte:02x} is not UTF-8; save the file as UTF-8"
-                )
-    return DataError(f"{file}: is not UTF-8; save the file as UTF-8")  # pragma: no cover
-
-
-def _write_csv(draft: Path, columns: Mapping[str, Any], progress: Progress) -> None:
-    length = len(next(iter(columns.values())))
-    with open(draft, "x", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        for start in range(0, length, CHUNK):
-            part = [cells(column[start : start + CHUNK]) for column in columns.values()]
-            writer.writerows(zip(*part, strict=True))
-            progress(min((start + CHUNK) / length, 1.0))
-
-
-def cells(values: Sequence[str] | Array) -> Sequence[Any]:
-    if not isinstance(values, np.ndarray):
-        return values
-    cells: list[Any] = values.tolist()
-    for index in np.flatnonzero(np.isnan(values)).tolist():
-        cells[index] = None
-    return cells
-
-
-# -------------------------------------------------------------------- Parquet
-
-
-def import_pyarrow(file: str) -> Any:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise DataError(
-            f"{file}: Parquet needs pyarrow, which is not installed; "
-            "pip install 'fuzzytrack[parquet]', or use CSV"
-        ) from None
-    return pyarrow
-
-
-def _read_parquet(
-    file: str, wanted: Callable[[tuple[str, ...]], Mapping[str, Kind]], progress: Progress
-) -> Table:
-    arrow = import_pyarrow(file)
-    with open(file, "rb") as stream:
-        try:
-            source = arrow.parquet.ParquetFile(stream)
-            names = checked_names(source.schema_arrow.names, file)
-            columns = [Column(file, name, kind) for name, kind in wanted(names).items()]
-            data = source.read([column.name for column in columns])
-        # Of a page that is broken, pyarrow says so by an OSError.
-        except (arrow.ArrowException, OSError) as error:
-            raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
-    rows = np.arange(1, data.num_rows + 1)
-    for column in columns:
-        values = data.column(column.name)
-        if column.kind == "word" or not is_number(arrow, values.type):
-            column.take([_text(value) for value in values.to_pylist()], rows.tolist())
-        else:
-            column.parts.append(_finite(column, values.to_numpy().astype(np.float64)))
-    progress(1.0)
-    return make_table(file, columns, rows)
-
-
-def is_number(arrow: Any, kind: Any) -> bool:
-    is_decimal = arrow.types.is_decimal(kind)
-    return bool(arrow.types.is_integer(kind) or arrow.types.is_floating(kind) or is_decimal)
-
-
-def _text(value: object) -> str:
-    return "" if value is None else str(value)
-
-
-def _finite(column: Column, values: Array) -> Array:
-    bad = np.isinf(values) if column.kind == "gaps" else ~np.isfinite(values)
-    if bad.any():
-        row = int(np.argmax(bad))
-        raise column.error(row + 1, str(values[row]), EXPECTED[column.kind])
-    return values
-
-
-def write_parquet(draft: Path, columns: Mapping[str, Any], progress: Progress) -> None:
-    arrow = import_pyarrow(str(draft))
-    table = arrow.table(
-        {
-            name: arrow.array(values, from_pandas=True)
-            if isinstance(values, np.ndarray)
-            else values
-            for name, values in columns.items()
-        }
-    )
-    arrow.parquet.write_table(table, draft)
-    progress(1.0)
+def silent(share: float) -> None:
+    """Progress that nobody watches."""

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
-from fuzzytrack.io.files import check_output
-from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
+from fuzzytrack.io.files import PathLike
+from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
-from fuzzytrack.io.table import table_writer
+from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partitions import check_output_folder, track_partitions
-from fuzzytrack.recordings.streaming import OpenTracks
+from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
@@ -24,7 +23,7 @@ __all__ = ["LargeJob"]
 
 @dataclass(frozen=True)
 class LargeJob:
-    """A recording to be tracked in pieces.
+    """A recording that is tracked in pieces.
 
     Attributes
     ----------
@@ -35,7 +34,7 @@ class LargeJob:
     tracker : LaneTracker
         The tracker.
     sigma : float or None
-        Standard deviation of the plots.
+        Standard deviation of the plots (m).
     rows : int
         Rows of a piece.
     """
@@ -49,58 +48,108 @@ class LargeJob:
     @classmethod
     def of(
         cls,
-        path: str,
+        path: PathLike,
         tracker: Tracker,
-        sigma: float | None,
-        rows: int | None,
+        sigma: float | None = None,
+        rows: int | None = None,
         *,
-        time: str | None,
-        id: str | None,
-        axes: list[str] | None,
+        time: str | None = None,
+        id: str | None = None,
+        axes: Sequence[str] | None = None,
     ) -> LargeJob:
-        """Job for a file or folder; finds its columns."""
+        """Make the job of a file or folder.
+
+        Parameters
+        ----------
+        path : str or path
+            CSV or Parquet file, or a folder of Parquet files.
+        tracker : Tracker
+            Any of this package.
+        sigma : float, optional
+            Standard deviation of the plots (m).
+        rows : int, optional
+            Rows of a piece; 250,000 unless given.
+        time, id, axes
+            Columns, as for `fuzzytrack.io.read_tracks`.
+
+        Raises
+        ------
+        ValueError
+            If the tracker has no state with which it can go on from piece to piece.
+        DataError
+            If a column is missing, or its type differs between files.
+        OSError
+            If a file cannot be read.
+        """
         if not isinstance(tracker, LaneTracker):
             raise ValueError(
-                f"--tracker: {type(tracker).__name__} cannot go on from piece to piece; it needs a "
+                f"tracker: {type(tracker).__name__} cannot go on from piece to piece; it needs a "
                 "file that is tracked as a whole"
             )
         files = recording_files(path)
         columns = find_columns(files, time=time, id=id, axes=axes)
-        return cls(files, columns, tracker, sigma, rows or ROWS)
+        return cls(files, columns, tracker, sigma, ROWS if rows is None else rows)
 
-    def track(self, output: str | None, progress: Progress | None = None) -> Totals:
-        """Track piece by piece, and write one file."""
+    def track(self, output: PathLike | None, progress: Progress | None = None) -> Totals:
+        """Track piece by piece.
+
+        Parameters
+        ----------
+        output : str or path, optional
+            File for the tracks; see `fuzzytrack.recordings.track_writer`.
+        progress : callable, optional
+            Called with the share that is done.
+
+        Returns
+        -------
+        Totals
+
+        Raises
+        ------
+        DataError, ValueError, OSError
+            As `fuzzytrack.io.read_pieces`, `fuzzytrack.recordings.run_iter` and
+            `fuzzytrack.recordings.track_writer`.
+        """
         if output is not None:
-            table_writer(output)
-            check_output(output, self.files)
-        tracks, totals = OpenTracks(self.tracker, self.sigma, OUTPUTS), Totals()
-        with ExitStack() as stack:
-            write = None
-            if output is not None:
-                write = stack.enter_context(piece_writer(output, self.columns, self.files))
-            for piece in read_pieces(self.files, self.columns, rows=self.rows, progress=progress):
-                tracked = tracks.advance(piece)
-                totals.add(tracked)
-                if write is not None:
-                    write(piece, tracked.outputs)
-            if not len(tracks):
-                raise DataError(f"{self.files[0]}: holds no rows, only column names")
-        totals.close(tracks)
+            check_table(output, self.files)
+        pieces = read_pieces(self.files, self.columns, rows=self.rows, progress=progress)
+        totals = track_pieces(
+            self.tracker, self.sigma, pieces, self.columns, output, inputs=self.files
+        )
+        if not totals.tracks:
+            raise no_rows(self.files[0])
         return totals
 
     def track_apart(
         self,
-        output: str | None,
-        jobs: int,
-        scheduler: str | None,
-        partitions: int,
+        output: PathLike,
+        jobs: int = 1,
+        scheduler: str | None = None,
+        partitions: int = 16,
         progress: Progress | None = None,
     ) -> Totals:
-        """Track in partitions, on several processes or a cluster, and write a folder."""
-        if output is None:
-            raise ValueError("--jobs and --scheduler need -o DIR, a folder for the tracks")
-        if scheduler is not None and jobs > 1:
-            raise ValueError("--jobs and --scheduler: give one; a cluster has workers of its own")
+        """Track in partitions, on several processes or a cluster.
+
+        Parameters
+        ----------
+        output : str or path
+            Folder for the tracks, one file a partition.
+        jobs, scheduler
+            Who does the work; see `fuzzytrack.workers.workers`.
+        partitions : int
+            Number of partitions.
+        progress : callable, optional
+            Called with the share of the tasks that are done.
+
+        Returns
+        -------
+        Totals
+
+        Raises
+        ------
+        DataError, ValueError, OSError
+            As `fuzzytrack.recordings.partitions.track_partitions` and `fuzzytrack.workers.workers`.
+        """
         check_output_folder(output)
         with workers(jobs, scheduler) as executor:
             return track_partitions(

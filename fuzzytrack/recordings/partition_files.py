@@ -1,4 +1,4 @@
-"""Recordings sorted into partitions by the identity of tracks."""
+"""Files of plots sorted into partitions by the identity of their tracks."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_file
-from fuzzytrack.io.piece_writer import arrow_column, column_writer
+from fuzzytrack.io.parquet import arrow_table, import_pyarrow, parquet_writer, words_of
 from fuzzytrack.io.recording import ROWS, Piece
-from fuzzytrack.io.table import Words, import_pyarrow
+from fuzzytrack.io.table import Words
 
 __all__ = ["partition_of", "read_partition", "write_partitions"]
 
@@ -49,15 +49,14 @@ def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, parti
     Each piece becomes as many row groups as there are partitions, empty ones included: row group
     k·partitions + p holds the rows of partition p of piece k, in their order.
     """
-    arrow = import_pyarrow(str(path))
     columns = _columns(n_axes)
-    numbers = [(name, arrow.float64()) for name in (columns.time, *columns.axes)]
-    schema = arrow.schema([(columns.id, arrow.string()), (_ROW, arrow.int64()), *numbers])
-    with whole_file(path) as draft, column_writer(arrow, draft, schema, columns.id) as writer:
+    types = {columns.id: "string", _ROW: "int64", columns.time: "float64"}
+    types |= dict.fromkeys(columns.axes, "float64")
+    with whole_file(path) as draft, parquet_writer(draft, types, compact=False) as writer:
         rows = 0
         for piece in pieces:
             rows += len(piece.time)
-            for table in _parts(arrow, schema, columns, piece, partitions):
+            for table in _parts(writer.schema, columns, piece, partitions):
                 writer.write_table(table)
     return rows
 
@@ -66,9 +65,7 @@ def _columns(n_axes: int) -> Columns:
     return Columns("time", "id", tuple(f"axis_{k}" for k in range(n_axes)))
 
 
-def _parts(
-    arrow: Any, schema: Any, columns: Columns, piece: Piece, partitions: int
-) -> Iterator[Any]:
+def _parts(schema: Any, columns: Columns, piece: Piece, partitions: int) -> Iterator[Any]:
     """Rows of each partition of a piece."""
     of_name = np.array([partition_of(name, partitions) for name in piece.ids.names], dtype=np.int64)
     of_row = of_name[piece.ids.codes]
@@ -79,8 +76,7 @@ def _parts(
         columns.time: piece.time[order],
         **{name: piece.plots[order, k] for k, name in enumerate(columns.axes)},
     }
-    arrays = [arrow_column(arrow, values[name]) for name in schema.names]
-    whole = arrow.Table.from_arrays(arrays, schema=schema)
+    whole = arrow_table(schema, values)
     ends = np.cumsum(np.bincount(of_row, minlength=partitions)).tolist()
     for start, end in zip([0, *ends[:-1]], ends, strict=True):
         yield whole.slice(start, end - start)
@@ -138,8 +134,7 @@ def read_partition(
 
 
 def _piece(table: Any, columns: Columns, file: str) -> Piece:
-    ids = table.column(columns.id).combine_chunks().dictionary_encode()
-    words = Words(tuple(ids.dictionary.to_pylist()), ids.indices.to_numpy().astype(np.int64))
+    words = words_of(table.column(columns.id))
     plots = np.stack([table.column(name).to_numpy() for name in columns.axes], axis=1)
     rows = table.column(_ROW).to_numpy()
     return Piece(words, table.column(columns.time).to_numpy(), plots, rows, file)

@@ -15,10 +15,10 @@ from typing import TypeVar
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
-from fuzzytrack.io.piece_writer import OUTPUTS, piece_writer
 from fuzzytrack.io.recording import ROWS, read_pieces
+from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partition_files import read_partition, write_partitions
-from fuzzytrack.recordings.streaming import OpenTracks
+from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
@@ -71,7 +71,7 @@ def track_partitions(
         From `fuzzytrack.io.find_columns`.
     output : str or path
         Folder that is made, with one Parquet file a partition, ``part-00000.parquet`` and on; see
-        `fuzzytrack.io.piece_writer`. It appears whole or not at all.
+        `fuzzytrack.recordings.track_writer`. It appears whole or not at all.
     sigma : float, optional
         Standard deviation of the plots (m).
     partitions : int
@@ -126,7 +126,7 @@ def track_partitions(
         for _, part in steps.counted(run_tasks(track, range(partitions), executor)):
             totals.merge(part)
         if not totals.tracks:
-            raise DataError(f"{files[0]}: holds no rows, only column names")
+            raise no_rows(files[0])
         _keep_only(draft, {job.part(number) for number in range(partitions)})
     return totals
 
@@ -203,19 +203,11 @@ def _track_partition(job: _Job, partition: int) -> Totals:
     n_axes = len(job.columns.axes)
     # A worker new to the tracker compiles it at once, if the work is worth it.
     announce(job.tracker, n_axes, n_axes * job.expected)
-    tracks, totals = OpenTracks(job.tracker, job.sigma, OUTPUTS), Totals()
-    with piece_writer(job.part(partition), job.columns) as write:
-        for number, file in enumerate(job.files):
-            for piece in read_partition(
-                job.sorted_file(number),
-                n_axes,
-                partition,
-                job.partitions,
-                file=file,
-                rows=job.rows,
-            ):
-                tracked = tracks.advance(piece)
-                totals.add(tracked)
-                write(piece, tracked.outputs)
-    totals.close(tracks)
-    return totals
+    pieces = (
+        piece
+        for number, file in enumerate(job.files)
+        for piece in read_partition(
+            job.sorted_file(number), n_axes, partition, job.partitions, file=file, rows=job.rows
+        )
+    )
+    return track_pieces(job.tracker, job.sigma, pieces, job.columns, job.part(partition))

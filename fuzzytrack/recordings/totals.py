@@ -1,14 +1,16 @@
-"""Sums over tracks, from which a summary follows."""
+"""The summary of a run: sums over its tracks, and the means that people read."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fuzzytrack.arrays import Array
-from fuzzytrack.recordings.streaming import OpenTracks, TrackedPiece
+from fuzzytrack.arrays import Array, Mask
+from fuzzytrack.recordings.streaming import TrackedPiece
+from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["Totals"]
 
@@ -35,24 +37,44 @@ class Totals:
     alpha: tuple[float, int] = (0.0, 0)
     beta: tuple[float, int] = (0.0, 0)
 
-    def add(self, tracked: TrackedPiece) -> None:
-        """Count a piece; its tracks and their duration are counted by `close`."""
-        seen = int((~np.isnan(tracked.piece.plots).any(axis=1)).sum())
-        self.plots += seen
-        self.missed += len(tracked.piece.time) - seen
-        outputs = tracked.outputs
-        squares = np.square(outputs["innovation"]).sum(axis=1)
-        self.squares = _more(self.squares, _known(squares))
-        self.alpha = _more(self.alpha, _known(outputs["alpha"]))
-        self.beta = _more(self.beta, _known(outputs["beta"]))
+    @classmethod
+    def of(cls, results: Sequence[TrackResult]) -> Totals:
+        """Totals of tracks that were run as a whole."""
+        totals = cls()
+        totals._count(
+            np.concatenate([_seen(r.measured) for r in results]),
+            np.concatenate([_squares(r.innovation) for r in results]),
+            np.concatenate([r.gains.alpha for r in results]),
+            np.concatenate([r.gains.beta for r in results]),
+        )
+        totals.close(len(results), float(sum(r.time[-1] - r.time[0] for r in results)))
+        return totals
 
-    def close(self, tracks: OpenTracks) -> None:
-        """Count the tracks, after the last piece."""
-        self.tracks += len(tracks)
-        self.duration += tracks.duration
+    def add(self, tracked: TrackedPiece) -> None:
+        """Count the plots of a piece; tracks are counted by `close`."""
+        outputs = tracked.outputs
+        self._count(
+            _seen(tracked.piece.plots),
+            _squares(outputs["innovation"]),
+            outputs["alpha"],
+            outputs["beta"],
+        )
+
+    def _count(self, seen: Mask, squares: Array, alpha: Array, beta: Array) -> None:
+        plots = int(seen.sum())
+        self.plots += plots
+        self.missed += len(seen) - plots
+        self.squares = _more(self.squares, _known(squares))
+        self.alpha = _more(self.alpha, _known(alpha))
+        self.beta = _more(self.beta, _known(beta))
+
+    def close(self, tracks: int, duration: float) -> None:
+        """Count the tracks, after the last piece, and the sum of their durations (s)."""
+        self.tracks += tracks
+        self.duration += duration
 
     def merge(self, other: Totals) -> None:
-        """Add those of other tracks."""
+        """Add the totals of other tracks."""
         self.tracks += other.tracks
         self.plots += other.plots
         self.missed += other.missed
@@ -63,7 +85,7 @@ class Totals:
 
     @property
     def summary(self) -> dict[str, float]:
-        """Numbers for people: plots, missed, duration, innovation_rms, and mean alpha and beta."""
+        """What people read: plots, missed, duration, innovation_rms, and mean alpha and beta."""
         return {
             "plots": self.plots,
             "missed": self.missed,
@@ -72,6 +94,18 @@ class Totals:
             "alpha": _mean(self.alpha),
             "beta": _mean(self.beta),
         }
+
+
+def _seen(plots: Array) -> Mask:
+    """Which plots are complete."""
+    found: Mask = np.logical_not(np.isnan(plots).any(axis=1))
+    return found
+
+
+def _squares(innovation: Array) -> Array:
+    """Squared length of each innovation (m²)."""
+    found: Array = np.square(innovation).sum(axis=1)
+    return found
 
 
 def _known(values: Array) -> tuple[float, int]:

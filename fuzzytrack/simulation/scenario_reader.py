@@ -12,7 +12,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import FileError
-from fuzzytrack.io.tracks import read_tracks
+from fuzzytrack.io.recording import read_tracks
 from fuzzytrack.simulation.noise import Noise
 from fuzzytrack.simulation.published import (
     MANEUVERS,

@@ -8,11 +8,10 @@ import pytest
 
 from fuzzytrack import DataError
 from fuzzytrack.io.columns import Columns
-from fuzzytrack.io.piece_writer import piece_writer
-from fuzzytrack.io.recording import Piece, find_columns, read_pieces, recording_files
+from fuzzytrack.io.recording import Piece, find_columns, read_pieces, read_tracks, recording_files
 from fuzzytrack.io.table import Words
-from fuzzytrack.io.tracks import read_tracks
 from fuzzytrack.recordings.partition_files import partition_of, read_partition, write_partitions
+from fuzzytrack.recordings.track_writer import track_writer
 
 XY = Columns("t", "id", ("x", "y"))
 
@@ -211,7 +210,7 @@ def test_a_piece_is_a_row_group(tmp_path):
     path = tmp_path / "o.parquet"
     first = Piece.of(["a", "b"], [0, 0], [[1.0, 2.0], [3.0, math.nan]])
     second = Piece.of(["b"], [1], [[5.0, 6.0]])
-    with piece_writer(path, XY) as write:
+    with track_writer(path, XY) as write:
         for piece in (first, second):
             write(piece, outputs(piece))
     source = pq.ParquetFile(path)
@@ -228,7 +227,7 @@ def test_a_piece_is_a_row_group(tmp_path):
 
 def test_a_table_that_fails_is_not_there(tmp_path):
     def fail(path):
-        with piece_writer(path, XY) as write:
+        with track_writer(path, XY) as write:
             piece = Piece.of(["a"], [0], [[1.0, 2.0]])
             write(piece, outputs(piece))
             raise DataError("bad row")
@@ -243,7 +242,7 @@ def test_columns_of_one_name(tmp_path):
     columns = Columns("x_filtered", "", ("x",))
     with (
         pytest.raises(DataError, match="two columns of the output would be 'x_filtered'"),
-        piece_writer(tmp_path / "o.csv", columns),
+        track_writer(tmp_path / "o.csv", columns),
     ):
         pass
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
-from fuzzytrack.io import check_output, read_table, read_tracks, table, write_table
+from fuzzytrack.io import check_output, csv, read_table, read_tracks, write_table
 from fuzzytrack.recordings import write_tracks
 
 
@@ -59,7 +59,7 @@ BAD = {
         "t,x\n0,0\n2,0\n1,0\n",
         r"row 4, column t: time 1 is earlier than 2 in row 3.*sort",
     ),
-    "repeated": ("t,x\n0,0\n0,1\n", r"row 3, column t: time 0 repeats that of row 2.*--id"),
+    "repeated": ("t,x\n0,0\n0,1\n", r"row 3, column t: time 0 repeats that of row 2.*`id`"),
     "empty": ("", r"f.csv: is empty"),
     "blank": ("\n\n", r"f.csv: is empty"),
     "header only": ("t,x\n\n", r"f.csv: holds no rows"),
@@ -70,8 +70,8 @@ BAD = {
     "tabs": ("t\tx\n0\t0\n", r"separated by tabs"),
     "not utf-8": (b"t,x\n0,0\n1,\xff\n", r"row 3: byte 0xff is not UTF-8"),
     "quote": ('t,x\n0,"0\n', r"row 2: not CSV"),
-    "no time": ("a,x\n0,0\n", r"no column t, t_s, time or time_s.*--time; there are a, x"),
-    "no axes": ("t,a\n0,0\n", r"no columns x, y.*--axes; there are t, a"),
+    "no time": ("a,x\n0,0\n", r"no column t, t_s, time or time_s.*`time`; there are a, x"),
+    "no axes": ("t,a\n0,0\n", r"no columns x, y.*`axes`; there are t, a"),
 }
 
 
@@ -84,10 +84,10 @@ def test_bad_files(tmp_path, text, message):
 @pytest.mark.parametrize(
     ("columns", "message"),
     [
-        ({"time": "tt"}, "--time: no column 'tt'; did you mean 't'"),
-        ({"axes": ["x", "q"]}, "--axes: no column 'q'; allowed: t, id, x"),
-        ({"axes": []}, "--axes: needs at least one"),
-        ({"id": "ID"}, "--id: no column 'ID'; did you mean 'id'"),
+        ({"time": "tt"}, "`time`: no column 'tt'; did you mean 't'"),
+        ({"axes": ["x", "q"]}, "`axes`: no column 'q'; allowed: t, id, x"),
+        ({"axes": []}, "`axes`: needs at least one"),
+        ({"id": "ID"}, "`id`: no column 'ID'; did you mean 'id'"),
         ({"axes": ["x", "x"]}, "column 'x' cannot serve twice"),
         ({"id": "id"}, "row 3, column id: an empty cell; expected some text"),
     ],
@@ -113,7 +113,7 @@ def test_rows_are_lines_also_after_cells_with_line_breaks(tmp_path):
 
 
 def test_long_files_come_in_pieces(tmp_path, monkeypatch):
-    monkeypatch.setattr(table, "CHUNK", 2)
+    monkeypatch.setattr(csv, "CHUNK", 2)
     shares = []
     path = written(tmp_path, "t,x\n0,0\n1,1\n\n\n2,\n3,3\n")
     (track,) = read_tracks(path, progress=shares.append).tracks
@@ -171,7 +171,7 @@ def test_the_input_is_never_overwritten(tmp_path):
 
 def test_failure_leaves_nothing_behind(tmp_path, monkeypatch):
     path = written(tmp_path, "old", "out.csv")
-    monkeypatch.setattr(table, "CHUNK", 1)
+    monkeypatch.setattr(csv, "CHUNK", 1)
 
     class Broken(list):
         def __getitem__(self, key):

@@ -150,7 +150,7 @@ def test_totals_by_hand():
         Piece.of(["a", "b", "a"], [2, 6, 4], [[19.0], [math.nan], [40.0]]),
     ):
         whole.add(tracks.advance(piece))
-    whole.close(tracks)
+    whole.close(len(tracks), tracks.duration)
     assert (whole.tracks, whole.plots, whole.missed, whole.duration) == (2, 5, 1, 5.0)
     # a: 20 is predicted for 19; then x = 19.5, v = 9.8, and 39.1 for 40
     assert whole.squares[0] == pytest.approx(1 + 0.81)

@@ -1,0 +1,255 @@
+"""Formats of files: which there are, and tables read and written in any of them.
+
+A format is a module of this package that has the functions of `Format`. Another one, such as a
+reader of radar messages, is such a module and a line in ``_FORMATS``: recordings, their columns and
+their complaints come from `fuzzytrack.io.recording`, which knows `Source` only.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.errors import DataError
+from fuzzytrack.io import csv, parquet
+from fuzzytrack.io.files import PathLike, check_output, whole_file
+from fuzzytrack.io.table import Kind, Table, Values, no_rows, silent
+from fuzzytrack.tasks import Progress
+
+__all__ = [
+    "PARQUET",
+    "Format",
+    "Source",
+    "check_table",
+    "open_table",
+    "read_table",
+    "table_writer",
+    "write_table",
+]
+
+
+class Source(Protocol):
+    """An open file of plots."""
+
+    @property
+    def file(self) -> str:
+        """Name of the file, for messages."""
+
+    @property
+    def types(self) -> Mapping[str, str]:
+        """Names of the columns, and the format's names for their types."""
+
+    def tables(
+        self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
+    ) -> Iterator[Table]:
+        """Read columns.
+
+        Parameters
+        ----------
+        kinds : mapping of str to Kind
+            The columns, and what each must hold.
+        rows : int or None
+            Rows of a table, at most; without it the whole file is one table.
+        progress : callable
+            Called with the share of the file that has been read.
+
+        Yields
+        ------
+        Table
+            At least one row; no table of a file without rows.
+
+        Raises
+        ------
+        DataError
+            If a cell does not hold what it must; names row, column and value.
+        """
+
+
+class Format(Protocol):
+    """What a module of this package offers for a format of files."""
+
+    def check(self, file: str, /) -> None:
+        """Raise a DataError if what the format needs is not installed."""
+
+    def open_source(self, file: str, /) -> AbstractContextManager[Source]:
+        """Open a file that is read; whatever is wrong with it, now or later, is a DataError."""
+
+    def open_target(
+        self, draft: Path, types: Mapping[str, str], compact: bool, progress: Progress, /
+    ) -> AbstractContextManager[Callable[[Values], None]]:
+        """Open a file that is written; the arguments are those of `table_writer`."""
+
+
+#: Suffixes of Parquet files.
+PARQUET = (".parquet", ".pq")
+
+# Formats by the suffixes of the files that are written in them. What has another suffix is read as
+# CSV.
+_FORMATS: dict[tuple[str, ...], Format] = {PARQUET: parquet, (".csv", ".txt"): csv}
+
+
+def open_table(file: str) -> AbstractContextManager[Source]:
+    """Open a file that is read, in the format that its name says.
+
+    Parameters
+    ----------
+    file : str
+        Parquet if it ends in ``.parquet`` or ``.pq``, otherwise CSV: UTF-8, separated by commas,
+        names in the first row.
+
+    Raises
+    ------
+    DataError
+        If the file is no such table, also later, while it is read.
+    OSError
+        If it cannot be read.
+    """
+    for suffixes, found in _FORMATS.items():
+        if file.lower().endswith(suffixes):
+            return found.open_source(file)
+    return csv.open_source(file)
+
+
+def _format_of_output(path: PathLike) -> Format:
+    suffix = Path(path).suffix.lower()
+    for suffixes, found in _FORMATS.items():
+        if suffix in suffixes:
+            found.check(os.fspath(path))
+            return found
+    raise DataError(f"{path}: cannot write {suffix or 'without suffix'}; .csv or .parquet")
+
+
+def check_table(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
+    """Look ahead whether a table can be written, before the work is done.
+
+    Parameters
+    ----------
+    path : str or path
+        The file to be written; it need not exist.
+    inputs : tuple of str or path
+        Files that must not be overwritten.
+
+    Raises
+    ------
+    DataError
+        If the suffix is that of no format, or the file is one of the inputs.
+    OSError
+        If the file cannot be written.
+    """
+    _format_of_output(path)
+    check_output(path, inputs)
+
+
+def read_table(
+    path: PathLike,
+    wanted: Callable[[tuple[str, ...]], Mapping[str, Kind]],
+    progress: Progress | None = None,
+) -> Table:
+    """Read columns of a CSV or Parquet file.
+
+    Parameters
+    ----------
+    path : str or path
+        See `open_table`.
+    wanted : callable
+        From the names of all columns to those wanted, with what they must hold. May raise.
+    progress : callable, optional
+        Called with the share of the file that has been read.
+
+    Returns
+    -------
+    Table
+        At least one row.
+
+    Raises
+    ------
+    DataError
+        If the file is no such table; names row and column.
+    OSError
+        If it cannot be read.
+    """
+    file = os.fspath(path)
+    with open_table(file) as source:
+        for table in source.tables(wanted(tuple(source.types)), None, progress or silent):
+            return table
+        raise no_rows(file)
+
+
+@contextmanager
+def table_writer(
+    path: PathLike,
+    types: Mapping[str, str],
+    inputs: tuple[PathLike, ...] = (),
+    *,
+    compact: bool = False,
+    progress: Progress | None = None,
+) -> Iterator[Callable[[Values], None]]:
+    """Write a CSV or Parquet file part by part; it appears whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+        Parquet if it ends in ``.parquet`` or ``.pq``, CSV if in ``.csv`` or ``.txt``.
+    types : mapping of str to str
+        Names of the columns, and their types: ``string``, or that of an array, as ``float64``.
+    inputs : tuple of str or path
+        Files that must not be overwritten.
+    compact : bool
+        Whether a small file is worth more time: in Parquet, numbers that repeat are stored once.
+    progress : callable, optional
+        Called with the share of a part that has been written.
+
+    Yields
+    ------
+    callable
+        To be called with the columns of some rows.
+
+    Raises
+    ------
+    DataError, OSError
+        See `check_table`.
+    """
+    found = _format_of_output(path)
+    with (
+        whole_file(path, inputs) as draft,
+        found.open_target(draft, types, compact, progress or silent) as write,
+    ):
+        yield write
+
+
+def write_table(
+    path: PathLike,
+    columns: Mapping[str, Sequence[str] | Array],
+    inputs: tuple[PathLike, ...] = (),
+    progress: Progress | None = None,
+) -> None:
+    """Write a CSV or Parquet file, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+        Parquet if it ends in ``.parquet`` or ``.pq``, CSV if in ``.csv`` or ``.txt``.
+    columns : mapping of str to ndarray or sequence of str
+        All of one length. NaN becomes an empty cell.
+    inputs : tuple of str or path
+        Files that must not be overwritten.
+    progress : callable, optional
+        Called with the share that has been written.
+
+    Raises
+    ------
+    DataError, OSError
+        See `check_table`.
+    """
+    types = {
+        name: values.dtype.name if isinstance(values, np.ndarray) else "string"
+        for name, values in columns.items()
+    }
+    with table_writer(path, types, inputs, compact=True, progress=progress) as write:
+        write(columns)

@@ -1,0 +1,56 @@
+"""From the pieces of a recording to the file of its tracks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import ExitStack
+
+from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.files import PathLike
+from fuzzytrack.io.recording import Piece
+from fuzzytrack.recordings.streaming import OpenTracks
+from fuzzytrack.recordings.totals import Totals
+from fuzzytrack.recordings.track_writer import OUTPUTS, track_writer
+from fuzzytrack.trackers.lane_tracker import LaneTracker
+
+__all__ = ["track_pieces"]
+
+
+def track_pieces(
+    tracker: LaneTracker,
+    sigma: float | None,
+    pieces: Iterable[Piece],
+    columns: Columns,
+    output: PathLike | None,
+    *,
+    inputs: tuple[PathLike, ...] = (),
+) -> Totals:
+    """Track pieces, count them, and write them as they come.
+
+    Parameters
+    ----------
+    tracker, sigma, pieces
+        As for `fuzzytrack.recordings.run_iter`.
+    columns : Columns
+        Of the recording.
+    output : str, path or None
+        File for the tracks, if there is to be one.
+    inputs : tuple of str or path
+        Files that must not be overwritten.
+
+    Returns
+    -------
+    Totals
+    """
+    tracks, totals = OpenTracks(tracker, sigma, OUTPUTS), Totals()
+    with ExitStack() as stack:
+        write = None
+        if output is not None:
+            write = stack.enter_context(track_writer(output, columns, inputs))
+        for piece in pieces:
+            tracked = tracks.advance(piece)
+            totals.add(tracked)
+            if write is not None:
+                write(piece, tracked.outputs)
+    totals.close(len(tracks), tracks.duration)
+    return totals
