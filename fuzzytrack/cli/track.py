@@ -162,7 +162,7 @@ def _folder(output: str | None) -> str:
 # -------------------------------------------------------------------- summary
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Run:
     """What is printed of a run: its columns, its totals, and those of single tracks if listed."""
 

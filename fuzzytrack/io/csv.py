@@ -6,7 +6,6 @@ import csv
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import accumulate, islice
 from pathlib import Path
 from typing import IO, Any
@@ -45,38 +44,34 @@ def open_source(file: str) -> Iterator[CsvSource]:
     with open(file, encoding="utf-8-sig", newline="") as stream:
         reader = csv.reader(stream, strict=True)
         try:
-            yield CsvSource(file, _header(reader, file), stream, reader)
+            yield CsvSource(file, stream, reader)
         except UnicodeDecodeError:
             raise _not_utf8(file) from None
         except csv.Error as error:
             raise DataError(f"{file}: row {reader.line_num}: not CSV: {error}") from None
 
 
-@dataclass(frozen=True)
 class CsvSource:
-    """An open CSV file, of which the names of the columns have been read."""
+    """An open CSV file; see `fuzzytrack.io.formats.Source`."""
 
-    file: str
-    names: tuple[str, ...]
-    stream: IO[str]
-    reader: Any
-
-    @property
-    def types(self) -> Mapping[str, str]:
-        """Columns: all are text."""
-        return dict.fromkeys(self.names, "text")
+    def __init__(self, file: str, stream: IO[str], reader: Any) -> None:
+        self.file = file
+        # Several columns may have no name.
+        self._names = _header(reader, file)
+        self.types = dict.fromkeys(self._names, "text")
+        self._stream, self._reader = stream, reader
 
     def tables(
         self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
     ) -> Iterator[Table]:
-        """Read columns, at most so many rows at a time; see `fuzzytrack.io.formats.Source`."""
-        places = [self.names.index(name) for name in kinds]
+        """Read columns, at most so many rows at a time."""
+        places = [self._names.index(name) for name in kinds]
         # Of the table that is being read.
         columns: list[Column] = []
         found: list[NDArray[np.int64]] = []
         waiting = 0
-        size = os.fstat(self.stream.fileno()).st_size
-        for lines, cells in _chunks(self.file, self.reader, len(self.names)):
+        size = os.fstat(self._stream.fileno()).st_size
+        for lines, cells in _chunks(self.file, self._reader, len(self._names)):
             step = rows or len(lines)
             for start in range(0, len(lines), step):
                 part = lines[start : start + step]
@@ -91,7 +86,7 @@ class CsvSource:
                 waiting += len(part)
             # What is no ordinary file, as a pipe, has no size.
             if size:
-                progress(min(self.stream.buffer.tell() / size, 1.0))  # type: ignore[attr-defined]
+                progress(min(self._stream.buffer.tell() / size, 1.0))  # type: ignore[attr-defined]
         if found:
             yield Table.of(self.file, columns, np.concatenate(found))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -66,32 +65,29 @@ def open_source(file: str) -> Iterator[ParquetSource]:
     with open(file, "rb") as stream:
         try:
             source = arrow.parquet.ParquetFile(stream, buffer_size=_BUFFER, pre_buffer=False)
-            checked_names(source.schema_arrow.names, file)
             yield ParquetSource(file, source)
         # pyarrow reports a page that is broken as an OSError.
         except (arrow.ArrowException, OSError) as error:
             raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
 
 
-@dataclass(frozen=True)
 class ParquetSource:
-    """An open Parquet file."""
+    """An open Parquet file; see `fuzzytrack.io.formats.Source`."""
 
-    file: str
-    source: Any
-
-    @property
-    def types(self) -> Mapping[str, str]:
-        """Columns, with the names that Arrow has for their types."""
-        schema = self.source.schema_arrow
-        return dict(zip(schema.names, map(str, schema.types), strict=True))
+    def __init__(self, file: str, source: Any) -> None:
+        self.file = file
+        schema = source.schema_arrow
+        self.types = dict(
+            zip(checked_names(schema.names, file), map(str, schema.types), strict=True)
+        )
+        self._source = source
 
     def tables(
         self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
     ) -> Iterator[Table]:
-        """Read columns, at most so many rows at a time; see `fuzzytrack.io.formats.Source`."""
+        """Read columns, at most so many rows at a time."""
         arrow = import_pyarrow(self.file)
-        total = self.source.metadata.num_rows
+        total = self._source.metadata.num_rows
         done = 0
         for part in self._parts(arrow, list(kinds), rows):
             if not part.num_rows:
@@ -106,9 +102,9 @@ class ParquetSource:
 
     def _parts(self, arrow: Any, names: list[str], rows: int | None) -> Iterator[Any]:
         if rows is None:
-            yield self.source.read(names)
+            yield self._source.read(names)
         else:
-            for batch in self.source.iter_batches(rows, columns=names):
+            for batch in self._source.iter_batches(rows, columns=names):
                 yield arrow.Table.from_batches([batch])
 
 

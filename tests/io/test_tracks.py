@@ -32,6 +32,11 @@ def test_ids_are_text_in_order_of_first_appearance(tmp_path):
     np.testing.assert_array_equal(recording.tracks[1].plots, [[2], [4]])
 
 
+def test_columns_without_a_name_are_ignored(tmp_path):
+    (track,) = read_tracks(written(tmp_path, "t,x,,\n3,4,5,\n4,5,,6\n")).tracks
+    np.testing.assert_array_equal(track.plots, [[4], [5]])
+
+
 def test_one_row_is_a_track(tmp_path):
     (track,) = read_tracks(written(tmp_path, "t,x\n3,4")).tracks
     assert track.plots.shape == (1, 1)
