@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzytrack.io.json_types import plain
+from fuzzytrack.json_types import plain
 from fuzzytrack.tasks import Progress
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from fuzzytrack.cli.output import (
 )
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import whole_file
-from fuzzytrack.io.json_types import plain
+from fuzzytrack.json_types import plain
 from fuzzytrack.papers.catalog import PAPERS, reproduce_all
 from fuzzytrack.papers.reproduction import Reproduction
 from fuzzytrack.yamltree import suggestion

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.io.json_types import plain
+from fuzzytrack.json_types import plain
 from fuzzytrack.version import __version__
 
 if TYPE_CHECKING:

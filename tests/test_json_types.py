@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fuzzytrack.io.json_types import plain
+from fuzzytrack.json_types import plain
 
 
 def test_values_are_in_the_types_of_json():
