@@ -11,8 +11,10 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
+from fuzzytrack.trackers import trackers
 
 ROOT = Path(__file__).resolve().parents[1]
+REGISTRIES = (schedulers, trackers, normalizations)
 PAGES = [
     ROOT / "README.md",
     *sorted((ROOT / "docs").glob("*.md")),
@@ -36,7 +38,7 @@ def a_folder_with_plots(tmp_path, monkeypatch):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 @pytest.mark.usefixtures("a_folder_with_plots")
 def test_python_on_the_page_runs(page, monkeypatch):
-    known = {plugin.name for registry in (schedulers, normalizations) for plugin in registry}
+    known = {registry: registry.names() for registry in REGISTRIES}
     rules = ft.load_rulebase("stiffness-damping")
     # Classes of the page pickle: they can be found in a module.
     module = ModuleType("page")
@@ -62,8 +64,8 @@ def test_python_on_the_page_runs(page, monkeypatch):
         for block in blocks(page, "python"):
             exec(compile(block, str(page), "exec"), vars(module))
     finally:
-        for registry in (schedulers, normalizations):
-            for name in set(registry.names()) - known:
+        for registry in REGISTRIES:
+            for name in set(registry.names()) - set(known[registry]):
                 registry.unregister(name)
 
 

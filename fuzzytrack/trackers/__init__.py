@@ -1,9 +1,13 @@
-"""Trackers: the recursion, its state and results."""
+"""Trackers, their states and results, and what a tracker of your own is made of."""
 
+from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.program import LaneProgram
+from fuzzytrack.lanes.start import single_axis_step
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker, trackers
 from fuzzytrack.trackers.imm import InteractingModels
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains, TrackState
@@ -14,12 +18,16 @@ __all__ = [
     "AlphaBetaTracker",
     "Gains",
     "InteractingModels",
+    "LaneProgram",
+    "LaneTracker",
     "ParallelBank",
     "Prediction",
+    "Rows",
     "TrackResult",
     "TrackState",
     "TrackStore",
     "Tracker",
     "WindowSearch",
+    "single_axis_step",
     "trackers",
 ]

@@ -9,6 +9,7 @@ import pytest
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.plugins import scripts
 from fuzzytrack.schedulers import schedulers
+from fuzzytrack.trackers import trackers
 
 SCRIPT = """
 from dataclasses import dataclass
@@ -98,7 +99,14 @@ def test_a_rule_base_on_a_normalization_of_a_script(run, fails, csv, script):
 
 @pytest.mark.parametrize(
     ("page", "name", "wanted"),
-    [("write-a-scheduler", "settling:longest=10", "growing-memory:limit=10")],
+    [
+        ("write-a-scheduler", "settling:longest=10", "growing-memory:limit=10"),
+        (
+            "write-a-tracker",
+            "averaged:quiet=0.4:agile=0.4",
+            "bank:lowest=0.4:highest=0.4:members=1:selection=best",
+        ),
+    ],
 )
 def test_the_first_example_of_a_page_is_a_script(run, csv, script, page, name, wanted):
     text = (Path(__file__).parents[2] / "docs" / f"{page}.md").read_text()
@@ -108,7 +116,8 @@ def test_the_first_example_of_a_page_is_a_script(run, csv, script, page, name, w
     try:
         assert numbers(run(*words, name, "--plugin", path)) == numbers(run(*words, wanted))
     finally:
-        schedulers.unregister(name.partition(":")[0])
+        registry = schedulers if "scheduler" in page else trackers
+        registry.unregister(name.partition(":")[0])
 
 
 def test_processes_know_the_script(run, script):

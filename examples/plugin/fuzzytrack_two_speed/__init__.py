@@ -1,12 +1,13 @@
-"""A gain scheduler and a normalisation, found by fuzzytrack through entry points."""
+"""A gain scheduler, a tracker and a normalization, found by fuzzytrack through entry points."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
 from fuzzytrack.normalizations import Normalization
 from fuzzytrack.schedulers import GainScheduler
+from fuzzytrack_two_speed.averaged import Averaged
 
-__all__ = ["SoftSign", "TwoSpeed"]
+__all__ = ["Averaged", "SoftSign", "TwoSpeed"]
 
 
 @dataclass(frozen=True)

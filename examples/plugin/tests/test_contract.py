@@ -1,22 +1,36 @@
-from fuzzytrack_two_speed import SoftSign, TwoSpeed
+import pytest
+from fuzzytrack_two_speed import Averaged, SoftSign, TwoSpeed
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
-from fuzzytrack.testing import check_scheduler
+from fuzzytrack.testing import check_scheduler, parametrize_with_checks
+from fuzzytrack.trackers import ParallelBank, trackers
 
 
 def test_entry_points_are_found():
     assert schedulers.get("two-speed") is TwoSpeed
+    assert trackers.get("averaged") is Averaged
     assert normalizations.get("soft-sign") is SoftSign
 
 
-def test_the_scheduler_keeps_the_contract():
-    check_scheduler(TwoSpeed(threshold=2.0))
+@parametrize_with_checks([TwoSpeed(threshold=2.0), Averaged(quiet=0.2)])
+def test_contract(check):
+    check()
 
 
-def test_the_normalisation_feeds_a_rule_base():
+def test_the_tracker_is_the_mean_of_two_filters():
+    times, plots = [0.0, 1.0, 2.5, 3.0, 5.0], [0.0, 10.0, 27.0, 30.0, float("nan")]
+    mean = Averaged(0.3, 0.8).run(times, plots)
+    one, other = (ParallelBank(alpha, alpha, members=1, selection="best").run(times, plots)
+                  for alpha in (0.3, 0.8))  # fmt: skip
+    for name in ("predicted", "filtered", "velocity"):
+        expected = (getattr(one, name) + getattr(other, name)) / 2
+        assert getattr(mean, name) == pytest.approx(expected, nan_ok=True)
+
+
+def test_the_normalization_feeds_a_rule_base():
     text = dumps_rulebase(ft.load_rulebase("stiffness-damping"))
     assert "chan" in text
     rules = ft.loads_rulebase(text.replace("normalization: chan", "normalization: soft-sign"))
