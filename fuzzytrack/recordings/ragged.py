@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
@@ -79,7 +80,7 @@ def _padded(t: Array, length: int) -> Array:
 
 
 def run_tracks(
-    tracker: Tracker,
+    tracker: Tracker | str,
     tracks: Sequence[tuple[Array, Array]],
     sigma: ArrayLike | None = None,
     progress: Callable[[float], None] | None = None,
@@ -88,8 +89,8 @@ def run_tracks(
 
     Parameters
     ----------
-    tracker : Tracker
-        The tracker.
+    tracker : Tracker or str
+        The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
     tracks : sequence of (t, z)
         Times, shape (n_steps,), and plots, shape (n_steps, n_axes), of each track.
     sigma : float, optional
@@ -107,6 +108,7 @@ def run_tracks(
     DataError, ValueError
         As `fuzzytrack.AlphaBetaTracker.run`.
     """
+    tracker = as_tracker(tracker)
     if not tracks:
         return []
     gap = np.full((1, tracks[0][1].shape[1]), np.nan)

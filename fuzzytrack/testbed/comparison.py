@@ -16,6 +16,7 @@ from fuzzytrack.simulation.noise import check_runs
 from fuzzytrack.tasks import Progress
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_trackers
 
 __all__ = ["Comparison", "compare", "compare_tracks"]
 
@@ -111,7 +112,7 @@ class Comparison:
 
 
 def compare(
-    trackers: Mapping[str, Tracker],
+    trackers: Mapping[str, Tracker | str],
     t: ArrayLike,
     truth: ArrayLike,
     sigma: float,
@@ -123,8 +124,9 @@ def compare(
 
     Parameters
     ----------
-    trackers : mapping of str to Tracker
-        The trackers, by name; at least one.
+    trackers : mapping of str to Tracker or str
+        The trackers by name, at least one; or what names them, see
+        `fuzzytrack.trackers.catalog.make_tracker`.
     t : array_like, shape (n_steps,)
         Times (s), increasing.
     truth : array_like, shape (n_steps, n_axes)
@@ -158,7 +160,7 @@ def compare(
 
 
 def compare_tracks(
-    trackers: Mapping[str, Tracker],
+    trackers: Mapping[str, Tracker | str],
     tracks: Sequence[tuple[ArrayLike, ArrayLike]],
     sigma: float,
     runs: int,
@@ -169,8 +171,8 @@ def compare_tracks(
 
     Parameters
     ----------
-    trackers : mapping of str to Tracker
-        The trackers, by name; at least one.
+    trackers : mapping of str to Tracker or str
+        As for `compare`.
     tracks : sequence of (t, truth)
         Times and true positions of each track, as for `compare`; all with the same axes.
     sigma, runs, seed, progress
@@ -186,7 +188,7 @@ def compare_tracks(
         As for `compare`.
     """
     _check(trackers, sigma, runs, seed)
-    sums = _Sums(trackers, tracks, sigma)
+    sums = _Sums(as_trackers(trackers), tracks, sigma)
     streams = np.random.SeedSequence(seed).spawn(runs)
     size = max(1, min(runs, _BATCH // sums.truth.size))
     starts = range(0, runs, size)
@@ -197,7 +199,7 @@ def compare_tracks(
     return sums.comparison(seed)
 
 
-def _check(trackers: Mapping[str, Tracker], sigma: float, runs: int, seed: int) -> None:
+def _check(trackers: Mapping[str, Tracker | str], sigma: float, runs: int, seed: int) -> None:
     if not trackers:
         raise ValueError("trackers: at least one is needed")
     if not (math.isfinite(sigma) and sigma > 0):

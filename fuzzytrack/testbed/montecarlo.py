@@ -18,7 +18,7 @@ from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.testbed.chunk_store import ChunkStore
 from fuzzytrack.testbed.results import Results, Sample
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.trackers.catalog import as_trackers
 from fuzzytrack.trackers.lane_tracker import announce
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
@@ -34,7 +34,7 @@ _RUNS = 124
 
 def monte_carlo(
     scenario: Scenario,
-    trackers: Mapping[str, Tracker] | None,
+    trackers: Mapping[str, Tracker | str] | None,
     runs: int,
     seed: int,
     *,
@@ -49,8 +49,9 @@ def monte_carlo(
     ----------
     scenario : Scenario
         Target and sensors.
-    trackers : mapping of str to Tracker, or None
-        The trackers, by name; those of the scenario if None.
+    trackers : mapping of str to Tracker or str, or None
+        The trackers by name, or what names them, see `fuzzytrack.trackers.catalog.make_tracker`;
+        those of the scenario if None.
     runs : int
         Number of Monte Carlo runs, at least 1.
     seed : int
@@ -101,28 +102,28 @@ def monte_carlo(
     >>> from fuzzytrack.simulation.scenario import PlotNoise, Scenario
     >>> t = np.arange(20.0)
     >>> scenario = Scenario("straight", t, 100 * t[:, None], PlotNoise(10.0))
-    >>> trackers = {"fixed": make_tracker("fixed:alpha=0.5:beta=0.2")}
+    >>> trackers = {"fixed": "fixed:alpha=0.5:beta=0.2"}
     >>> results = monte_carlo(scenario, trackers, runs=50, seed=1)
     >>> results.rmse().round(1), results.rmse_se().round(1)
     (array([11.]), array([0.5]))
     """
     check_runs(runs, seed)
     if trackers is None:
-        trackers = {name: make_tracker(name) for name in scenario.trackers}
+        trackers = {name: name for name in scenario.trackers}
     if not trackers:
         raise ValueError("trackers: at least one is needed")
-    trackers = dict(trackers)
+    made = as_trackers(trackers)
     size = _chunk_runs(scenario)
     chunks = [range(first, min(first + size, runs)) for first in range(0, runs, size)]
     store = None
     if folder is not None:
-        store = ChunkStore.open(folder, scenario, trackers, seed, size, resume=resume)
+        store = ChunkStore.open(folder, scenario, made, seed, size, resume=resume)
     elif resume:
         raise ValueError("resume: needs the folder of the job to continue")
 
     whole: dict[str, Array] = {}
     done = 0
-    for chunk, part in _parts(scenario, trackers, seed, chunks, executor, store):
+    for chunk, part in _parts(scenario, made, seed, chunks, executor, store):
         _put(whole, part, chunk.start, runs)
         done += len(chunk)
         if progress is not None:
@@ -130,7 +131,7 @@ def monte_carlo(
     sample = {name: whole.pop(name) for name in tuple(whole) if name.startswith("sample_")}
     return Results(
         scenario=scenario.name,
-        names=tuple(trackers),
+        names=tuple(made),
         seed=seed,
         first_scored=scenario.first_scored,
         time=scenario.time,

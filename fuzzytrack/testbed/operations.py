@@ -20,6 +20,7 @@ import numpy as np
 from fuzzytrack.kernels.rebuild import rebuilt
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
+from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["Counted", "OperationCount", "Tally", "count_operations", "count_program"]
@@ -215,14 +216,15 @@ class OperationCount:
 
 
 def count_operations(
-    tracker: LaneTracker | GainScheduler, scans: int = 20, n_axes: int = 2
+    tracker: LaneTracker | GainScheduler | str, scans: int = 20, n_axes: int = 2
 ) -> OperationCount:
     """Count the operations of a tracker's own kernel on one track.
 
     Parameters
     ----------
-    tracker : LaneTracker or GainScheduler
-        A scheduler is counted in a `fuzzytrack.AlphaBetaTracker`.
+    tracker : LaneTracker, GainScheduler or str
+        A text names a tracker, see `fuzzytrack.trackers.catalog.make_tracker`. A scheduler is
+        counted in a `fuzzytrack.AlphaBetaTracker`.
     scans : int
         Number of scans, at least 1; none is missed.
     n_axes : int
@@ -254,21 +256,22 @@ def count_operations(
     >>> count_operations(FixedGains(0.5, 0.2)).scheduler
     0
     """
-    if isinstance(tracker, GainScheduler):
-        tracker = AlphaBetaTracker(tracker)
-    if not isinstance(tracker, LaneTracker):
+    counted: object = make_tracker(tracker) if isinstance(tracker, str) else tracker
+    if isinstance(counted, GainScheduler):
+        counted = AlphaBetaTracker(counted)
+    if not isinstance(counted, LaneTracker):
         raise TypeError(
-            f"tracker must be a LaneTracker or a GainScheduler, got {type(tracker).__name__}"
+            f"tracker must be a LaneTracker or a GainScheduler, got {type(counted).__name__}"
         )
     for name, number in (("scans", scans), ("n_axes", n_axes)):
         if number < 1:
             raise ValueError(f"{name} must be at least 1, got {number}")
     plots = _plots(scans, n_axes)
-    groups = [range(n_axes)] if tracker.coupled else [range(j, j + 1) for j in range(n_axes)]
+    groups = [range(n_axes)] if counted.coupled else [range(j, j + 1) for j in range(n_axes)]
     scheduler = recursion = updates = 0
     at_updates = [0, 0]
     for axes in groups:
-        for corrected, spent in _run(tracker, [[row[j] for j in axes] for row in plots]):
+        for corrected, spent in _run(counted, [[row[j] for j in axes] for row in plots]):
             scheduler += spent[0]
             recursion += spent[1]
             if corrected:

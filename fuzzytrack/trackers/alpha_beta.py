@@ -9,6 +9,7 @@ from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.schedulers.catalog import as_scheduler
 from fuzzytrack.trackers.alpha_beta_step import steady_function, step_function
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -25,9 +26,10 @@ class AlphaBetaTracker(LaneTracker):
 
     Parameters
     ----------
-    scheduler : GainScheduler
-        Chooses the gains. An ordinary one works on each axis by itself; a coupled one sees all
-        axes of a track and gives them one set of gains.
+    scheduler : GainScheduler or str
+        Chooses the gains; a text names one, as ``"fixed:alpha=0.5:beta=0.2"`` or a rule base, see
+        `fuzzytrack.schedulers.catalog.make_scheduler`. An ordinary one works on each axis by
+        itself; a coupled one sees all axes of a track and gives them one set of gains.
     start : {"two-point", "one-point"}
         ``two-point`` takes position from the second plot and velocity from the first two (the
         papers' way: predictions begin with the third plot). ``one-point`` takes position from the
@@ -36,9 +38,9 @@ class AlphaBetaTracker(LaneTracker):
     Raises
     ------
     TypeError
-        If `scheduler` is not a GainScheduler.
+        If `scheduler` is neither.
     ValueError
-        If `start` is unknown.
+        If `start` is unknown, or the text names no scheduler.
 
     Notes
     -----
@@ -60,12 +62,10 @@ class AlphaBetaTracker(LaneTracker):
     scheduler: GainScheduler
     start_mode: str = "two-point"
 
-    def __init__(self, scheduler: GainScheduler, start: str = "two-point") -> None:
-        if not isinstance(scheduler, GainScheduler):
-            raise TypeError(f"scheduler must be a GainScheduler, got {type(scheduler).__name__}")
+    def __init__(self, scheduler: GainScheduler | str, start: str = "two-point") -> None:
         if start not in STARTS:
             raise ValueError(f"start: unknown {start!r}; one of {', '.join(STARTS)}")
-        object.__setattr__(self, "scheduler", scheduler)
+        object.__setattr__(self, "scheduler", as_scheduler(scheduler))
         object.__setattr__(self, "start_mode", start)
 
     def __repr__(self) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.state import TrackState, check_rows
 
@@ -27,8 +28,8 @@ class TrackStore:
 
     Parameters
     ----------
-    tracker : Tracker
-        Of all tracks.
+    tracker : Tracker or str
+        Of all tracks; or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
     n_axes : int
         Axes of the plots.
 
@@ -58,7 +59,8 @@ class TrackStore:
     array([[-10.]])
     """
 
-    def __init__(self, tracker: Tracker, n_axes: int) -> None:
+    def __init__(self, tracker: Tracker | str, n_axes: int) -> None:
+        tracker = as_tracker(tracker)
         self.tracker, self.n_axes = tracker, n_axes
         # Without a plot, so the standard deviation is of no meaning.
         nobody = tracker.start(np.empty((0, n_axes)), 0.0, 1.0)

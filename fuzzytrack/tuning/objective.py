@@ -7,16 +7,18 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.published import TRACK_SETS, TrackSet
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_tracker
 
 __all__ = ["prediction_mse"]
 
 
-def prediction_mse(tracker: Tracker, tracks: TrackSet, seed: int) -> Array:
+def prediction_mse(tracker: Tracker | str, tracks: TrackSet, seed: int) -> Array:
     """Mean squared error of the predictions of each track, with noise of standard deviation 1.
 
     Parameters
     ----------
-    tracker : Tracker
+    tracker : Tracker or str
+        The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
     tracks : TrackSet
     seed : int
         Seed of the noise; the same noise for every tracker.
@@ -28,6 +30,6 @@ def prediction_mse(tracker: Tracker, tracks: TrackSet, seed: int) -> Array:
     """
     noise = np.random.default_rng([seed, TRACK_SETS.index(tracks.name)])
     plots = tracks.position + noise.standard_normal(tracks.position.shape)
-    predicted = tracker.run(tracks.time, plots, 1.0).predicted
+    predicted = as_tracker(tracker).run(tracks.time, plots, 1.0).predicted
     error = (predicted - tracks.position)[tracks.first_scored :]
     return np.asarray((error**2).sum(axis=-1).mean(axis=0))

@@ -1,10 +1,20 @@
+import numpy as np
 import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains, RuleBaseError, load_rulebase
 from fuzzytrack.fuzzy.saving import save_rulebase
+from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.schedulers import schedulers
+from fuzzytrack.schedulers.catalog import make_scheduler
+from fuzzytrack.simulation.published import track_set
+from fuzzytrack.simulation.scenario import PlotNoise, Scenario
+from fuzzytrack.testbed.comparison import compare, compare_tracks
+from fuzzytrack.testbed.montecarlo import monte_carlo
+from fuzzytrack.testbed.operations import count_operations
 from fuzzytrack.trackers import trackers
 from fuzzytrack.trackers.catalog import catalog, make_tracker
+from fuzzytrack.trackers.track_store import TrackStore
+from fuzzytrack.tuning.objective import prediction_mse
 
 
 @pytest.fixture
@@ -79,7 +89,7 @@ def test_values_follow_the_annotations():
         ("chan-style:metod=table", "did you mean 'method'"),
         ("alpha-beta", "needs scheduler"),
         ("alpha-beta:strat=1", "unknown parameter 'strat'; did you mean 'start'"),
-        ("alpha-beta:scheduler=q", "no such tracker"),
+        ("alpha-beta:scheduler=q", "scheduler 'q': no such scheduler; allowed: chan-style"),
         ("toy:level=1.5", "level must be a whole number, got '1.5'"),
         ("toy:level=1:flag=perhaps", "flag must be true or false"),
         ("toy:level=1:maybe=x", "maybe must be a number"),
@@ -120,3 +130,72 @@ def test_everything_listed_has_a_name_parameters_and_package():
     assert "Llinas" in entries["tracker", "alpha-beta"].source
     assert ("rule base", "valve") not in entries
     assert ("tracker", "toy-tracker") in entries
+
+
+# ------------------------------------------------------------------ texts in place of objects
+
+TEXT = "kalman-cv:sigma_v=0.5:sigma_w=2:start=one-point"
+TIMES = np.array([0.0, 1.0, 3.0, 4.0, 7.0])
+TRUTH = TIMES[:, None] * [3.0, -1.0]
+
+
+def a_comparison(tracker):
+    return compare({"a": tracker}, TIMES, TRUTH, 2.0, runs=3, seed=1).predicted_mse
+
+
+def pooled(tracker):
+    return compare_tracks({"a": tracker}, [(TIMES, TRUTH)], 2.0, runs=3, seed=1).predicted_mse
+
+
+def an_experiment(tracker):
+    scenario = Scenario("line", TIMES, TRUTH, PlotNoise(2.0))
+    return monte_carlo(scenario, {"a": tracker}, runs=3, seed=1).predicted
+
+
+def a_store(tracker):
+    store = TrackStore(tracker, 2)
+    slots = store.add(store.tracker.start([[0.0, 1.0]], 0.0))
+    store.step(slots, [[5.0, 3.0]], 2.0)
+    return store.gather(slots).position
+
+
+WAYS = {
+    "run_tracks": lambda tracker: run_tracks(tracker, [(TIMES, TRUTH)])[0].predicted,
+    "compare": a_comparison,
+    "compare_tracks": pooled,
+    "monte_carlo": an_experiment,
+    "count_operations": lambda tracker: count_operations(tracker).total,
+    "TrackStore": a_store,
+    "prediction_mse": lambda tracker: prediction_mse(tracker, track_set("report", 2, 3), 1),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_text_stands_for_a_tracker(way):
+    np.testing.assert_array_equal(WAYS[way](TEXT), WAYS[way](make_tracker(TEXT)))
+    with pytest.raises(ValueError, match="no such tracker"):
+        WAYS[way]("nothing")
+
+
+def test_a_text_stands_for_a_scheduler(tmp_path):
+    assert AlphaBetaTracker("fixed:alpha=0.5:beta=0.2") == AlphaBetaTracker(FixedGains(0.5, 0.2))
+    assert AlphaBetaTracker("chan-style", "one-point") == make_tracker("chan-style:start=one-point")
+    save_rulebase(load_rulebase("chan-style"), tmp_path / "mine.yaml")
+    mine = AlphaBetaTracker(f"{tmp_path / 'mine.yaml'}:method=table").scheduler
+    assert mine == make_scheduler("chan-style:method=table")
+
+
+@pytest.mark.parametrize(
+    ("spec", "message"),
+    [
+        ("", "scheduler '': no such scheduler"),
+        ("fixd", "did you mean 'fixed'"),
+        ("imm", "scheduler 'imm': no such scheduler"),
+        ("fixed:alpha=0.5", "scheduler 'fixed:alpha=0.5': needs beta; write it as :beta=..."),
+        ("fixed:alpha=0.5:beta=0.2:start=one-point", "unknown parameter 'start'"),
+        ("fixed:0.5", "scheduler 'fixed:0.5': '0.5' is no parameter"),
+    ],
+)
+def test_mistakes_in_schedulers(spec, message):
+    with pytest.raises(ValueError, match=message):
+        AlphaBetaTracker(spec)
