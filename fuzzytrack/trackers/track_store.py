@@ -65,8 +65,10 @@ class TrackStore:
         # Without a plot, so the standard deviation is of no meaning.
         nobody = tracker.start(np.empty((0, n_axes)), 0.0, 1.0)
         self._rows = nobody.rows
-        # A row a track: what is near in time is fetched together.
-        self._numbers = np.empty((0, nobody.rows.kept, n_axes // nobody.rows.n_axes))
+        # A row a track: what is near in time is fetched together. A cell is a number of all lanes
+        # of the track, which are copied together.
+        self._cell = np.dtype((np.void, 8 * (n_axes // nobody.rows.n_axes)))
+        self._numbers = np.empty((0, nobody.rows.kept), self._cell)
         # NaN in slots without a track.
         self._time = np.empty(0)
         self._used = 0
@@ -165,10 +167,8 @@ class TrackStore:
             As for `drop`.
         """
         whom = self._checked(slots)
-        numbers = self._numbers[whom]
-        count, kept, per_track = numbers.shape
-        lanes = numbers.swapaxes(0, 1).reshape(kept, count * per_track)
-        return TrackState(self._time[whom], (count, self.n_axes), lanes, self._rows)
+        lanes = np.ascontiguousarray(self._numbers[whom].T).view(np.float64)
+        return TrackState(self._time[whom], (len(whom), self.n_axes), lanes, self._rows)
 
     def scatter(self, slots: ArrayLike, state: TrackState) -> None:
         """Replace the state of some tracks.
@@ -243,9 +243,7 @@ class TrackStore:
         return self.tracker.predict(self.gather(slots), t, sigma)
 
     def _put(self, slots: Slots, state: TrackState) -> None:
-        _, kept, per_track = self._numbers.shape
-        lanes = state.lanes.reshape(kept, len(slots), per_track)
-        self._numbers[slots] = lanes.swapaxes(0, 1)
+        self._numbers[slots] = state.lanes.view(self._cell).T
         self._time[slots] = state.time
 
     def _make_room(self, count: int) -> None:
