@@ -16,7 +16,7 @@ from fuzzytrack.kernels.language import use_wide_vectors
 from fuzzytrack.kernels.llvm import call_steady, call_step
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows
 
-__all__ = ["compiled_hop", "compiled_run", "layout"]
+__all__ = ["compiled_one_step", "compiled_run", "layout"]
 
 
 def layout(rows: Rows) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -108,30 +108,70 @@ def _run(
     return infinite
 
 
-def _hop(
-    step: int, n_axes: int, state: int, kept: int, plot_row: int, b: Any, lanes: int, old: Any,
-    plots: Any, dt: float, sigma: float, new: Any,
+def _fill_common(
+    b: Any, dt_row: int, sigma_row: int, n_axes: int, dt: float, sigma: float, lanes: int,
+    begin: int, count: int,
 ) -> int:  # fmt: skip
-    """One step of all lanes, with one time step and one sigma for all.
-
-    It is `_run` cut down to what a track that comes plot by plot needs.
-    """
-    sigma_row, dt_row = plot_row + n_axes, plot_row + 2 * n_axes
-    before, after = old.reshape(-1), new.reshape(-1)
-    for begin in range(0, lanes, BLOCK):
-        count = min(BLOCK, lanes - begin)
-        for r in range(state):
-            _copy_in(b, r, before, r * lanes + begin, 1, count)
-        for j in range(n_axes):
-            _copy_in(b, plot_row + j, plots, begin * n_axes + j, n_axes, count)
-            for i in range(count):
-                b[(sigma_row + j) * BLOCK + i] = sigma
+    """Fill in one time step and one sigma for all lanes."""
+    for j in range(n_axes):
         for i in range(count):
-            b[dt_row * BLOCK + i] = dt
-        call_step(step, b, count)
-        for r in range(kept):
-            _copy_out(b, r, after, r * lanes + begin, 1, count)
-    return _infinite(plots, 0, lanes * n_axes)
+            b[(sigma_row + j) * BLOCK + i] = sigma
+    for i in range(count):
+        b[dt_row * BLOCK + i] = dt
+    return 0
+
+
+def _fill_own(
+    b: Any, dt_row: int, sigma_row: int, n_axes: int, dts: Any, sigmas: Any, lanes: int,
+    begin: int, count: int,
+) -> int:  # fmt: skip
+    """Fill in the time step of each track, and the sigma of each plot or one for all.
+
+    How many time steps are not positive and finite is returned.
+    """
+    each = 1 if len(sigmas) > 1 else 0
+    for j in range(n_axes):
+        place = each * (begin * n_axes + j)
+        _copy_in(b, sigma_row + j, sigmas, place, each * n_axes, count)
+    steps, good = b[dt_row * BLOCK : dt_row * BLOCK + count], 0
+    # Lanes of a track lie side by side: one of each track, then the next of each.
+    per_track = lanes // len(dts)
+    for first in range(min(per_track, count)):
+        track = (begin + first) // per_track
+        out_of, into = dts[track:], steps[first:]
+        for i in range((count - first + per_track - 1) // per_track):
+            into[i * per_track] = out_of[i]
+    for i in range(count):
+        good += (steps[i] > 0.0) & (steps[i] < math.inf)
+    return count - good
+
+
+def _one_step(fill: Callable[..., int]) -> Callable[..., int]:
+    """Function that takes all lanes one step on, with time steps and sigmas that `fill` fills in.
+
+    It is `_run` cut down to what tracks that come plot by plot need. It returns how many plots are
+    infinite, and what `fill` found bad; `new` is of no use then.
+    """
+
+    def one_step(
+        step: int, n_axes: int, state: int, kept: int, plot_row: int, b: Any, old: Any, plots: Any,
+        dt: Any, sigma: Any, new: Any,
+    ) -> int:  # fmt: skip
+        sigma_row, dt_row, lanes = plot_row + n_axes, plot_row + 2 * n_axes, old.shape[1]
+        before, after, bad = old.reshape(-1), new.reshape(-1), 0
+        for begin in range(0, lanes, BLOCK):
+            count = min(BLOCK, lanes - begin)
+            for r in range(state):
+                _copy_in(b, r, before, r * lanes + begin, 1, count)
+            for j in range(n_axes):
+                _copy_in(b, plot_row + j, plots, begin * n_axes + j, n_axes, count)
+            bad += fill(b, dt_row, sigma_row, n_axes, dt, sigma, lanes, begin, count)
+            call_step(step, b, count)
+            for r in range(kept):
+                _copy_out(b, r, after, r * lanes + begin, 1, count)
+        return bad + _infinite(plots, 0, lanes * n_axes)
+
+    return one_step
 
 
 @cache
@@ -141,6 +181,13 @@ def compiled_run() -> Callable[..., int]:
 
 
 @cache
-def compiled_hop() -> Callable[..., int]:
-    """`_hop`, compiled; for the one type of arguments that it is first called with."""
-    return compiled(_hop)
+def compiled_one_step(own: bool) -> Callable[..., int]:
+    """One step of all lanes, compiled; for the one type of arguments that it is first called with.
+
+    Parameters
+    ----------
+    own : bool
+        Whether it is given the time step of each track and the sigma of each plot, as arrays, or
+        one number for all.
+    """
+    return compiled(_one_step(_fill_own if own else _fill_common))

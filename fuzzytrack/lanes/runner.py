@@ -46,14 +46,16 @@ class Runner:
         Coordinates that were tracked so far.
     horizon : int
         What `work` will be after the jobs that were announced.
-    hop : callable or None
-        After `compile`, that of `fuzzytrack.lanes.block_loop`, from its argument `b` on.
+    common_step, own_step : callable or None
+        After `compile`, `fuzzytrack.lanes.block_loop.compiled_one_step` from its argument `b` on:
+        with one time step and sigma for all lanes, and with those of each track and plot.
     """
 
     program: LaneProgram
     work: int = 0
     horizon: int = 0
-    hop: Callable[..., int] | None = field(default=None, init=False, repr=False)
+    common_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
+    own_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
     _code: dict[tuple[object, type], Any] = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -229,21 +231,27 @@ class Runner:
 
     def compile(self) -> None:
         """Compile now whatever is ever going to be in double precision."""
-        if self.hop is not None:
+        if self.own_step is not None:
             return
-        from fuzzytrack.lanes import block_loop as passage
 
         n_axes = self.rows.n_axes
         lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
         for results in (True, False):
             self.steady_code(results)
         self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], (), 1)
-        hop: Any = passage.compiled_hop()
-        places = (self.step_code().address, n_axes, self.rows.state, self.rows.kept, self.rows.plot)
-        buffer = aligned(self.rows.total * BLOCK)
-        hop(*places, buffer, 1, lanes, one.reshape(-1), 1.0, 1.0, lanes)
+        self.common_step = self._one_step(1.0)
+        self.own_step = self._one_step(np.ones(1))
+
+    def _one_step(self, ones: float | Array) -> Callable[..., int]:
+        """Compiled step of all lanes, for time steps and sigmas of the type of `ones`."""
+        from fuzzytrack.lanes import block_loop as passage
+
+        rows, lanes, plots = self.rows, self.fresh(1), np.ones(self.rows.n_axes)
+        one_step: Any = passage.compiled_one_step(isinstance(ones, np.ndarray))
+        places = (self.step_code().address, rows.n_axes, rows.state, rows.kept, rows.plot)
+        one_step(*places, aligned(rows.total * BLOCK), lanes, plots, ones, ones, lanes)
         # The one signature there is, without asking again which it is.
-        self.hop = partial(hop.overloads[hop.signatures[0]].entry_point, *places)
+        return partial(one_step.overloads[one_step.signatures[0]].entry_point, *places)
 
     def step_code(self, dtype: type = np.float64) -> Any:
         """Compiled step of the program, see `fuzzytrack.kernels.compile.entry_point`."""

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import BLOCK, aligned
 from fuzzytrack.lanes.runner import Runner
 from fuzzytrack.trackers.state import TrackState
 
-__all__ = ["Hop"]
+__all__ = ["CompiledStep"]
 
 _FLOAT = np.dtype(np.float64)
 _NUMBERS = (float, int)
@@ -21,31 +22,29 @@ _set_time, _set_shape, _set_lanes, _set_rows = (
 )
 
 
-class Hop:
-    """Steps states whose plots have one shape.
+class CompiledStep:
+    """Steps states of one layout, any number of tracks.
 
-    It takes the ordinary case only: floats, one time and one sigma for all. Whatever is different,
-    or wrong, is left to `fuzzytrack.trackers.lane_tracker.LaneTracker`, which has words for it.
+    It takes the ordinary case only: floats, times as a number or as an array with one for each
+    track, and sigmas as a number or an array. Whatever is different, or wrong, is left to
+    `fuzzytrack.trackers.lane_tracker.LaneTracker`, which has the checks and the messages.
 
     Parameters
     ----------
     core : Runner
         Compiled, see `fuzzytrack.lanes.runner.Runner.compile`.
-    shape : tuple of int
-        Shape of a plot.
-    lanes : int
-        Number of lanes.
     needs_sigma : bool
         Whether plots need a standard deviation.
     """
 
-    def __init__(self, core: Runner, shape: tuple[int, ...], lanes: int, needs_sigma: bool) -> None:
+    def __init__(self, core: Runner, needs_sigma: bool) -> None:
         # Its code is called by address, and must not go.
         self._core = core
-        self._call: Any = core.hop
-        self._shape, self._lanes, self._rows = shape, lanes, core.rows
-        self._kept = (core.rows.kept, lanes)
-        self._needs_sigma = needs_sigma
+        self._common_step: Any = core.common_step
+        self._own_step: Any = core.own_step
+        self._rows, self._needs_sigma = core.rows, needs_sigma
+        # Shapes of the plots and of the lanes of the last state.
+        self._sizes: tuple[tuple[int, ...] | None, tuple[int, ...]] = (None, ())
         # Taken out while in use, so that threads do not share one.
         self._buffers: list[NDArray[np.float64]] = []
 
@@ -56,34 +55,43 @@ class Hop:
                 return None
             z = np.array(z, dtype=_FLOAT)
         if sigma is None:
-            sigma = math.nan
             if self._needs_sigma:
                 return None
-        elif not (isinstance(sigma, float) and 0.0 < sigma < math.inf):
-            return None
-        time, lanes, rows, shape = state.time, state.lanes, self._rows, self._shape
+            sigma, common = math.nan, True
+        else:
+            common = isinstance(sigma, float) and 0.0 < sigma < math.inf
+        time, lanes, rows, shape = state.time, state.lanes, self._rows, state.shape
         if (
-            type(time) is not np.float64
-            or not isinstance(t, _NUMBERS)
-            or z.dtype != _FLOAT
+            z.dtype != _FLOAT
             or z.shape != shape
             or not z.flags.c_contiguous
             or (state.rows is not rows and state.rows != rows)
         ):
             return None
-        t = np.float64(t)
-        dt = float(t - time)
-        if not 0.0 < dt < math.inf:
-            return None
+        dt: Any
+        if common and type(time) is np.float64 and isinstance(t, _NUMBERS):
+            t = np.float64(t)
+            dt, step = float(t - time), self._common_step
+            if not 0.0 < dt < math.inf:
+                return None
+        else:
+            given = _of_each(state, t, sigma, common)
+            if given is None:
+                return None
+            (t, dt, sigma), step = given, self._own_step
         try:
             buffer = self._buffers.pop()
         except IndexError:
             buffer = aligned(rows.total * BLOCK)
-        after = np.empty(self._kept)
+        # The states of a stream share their shape; to ask an array for its own takes longer.
+        sizes = self._sizes
+        if sizes[0] is not shape:
+            sizes = self._sizes = (shape, lanes.shape)
+        after = np.empty(sizes[1])
         plots = z if len(shape) == 1 else z.reshape(-1)
-        infinite = self._call(buffer, self._lanes, lanes, plots, dt, sigma, after)
+        bad = step(buffer, lanes, plots, dt, sigma, after)
         self._buffers.append(buffer)
-        if infinite:
+        if bad:
             return None
         # The constructor of a frozen class takes as long as all the arithmetic.
         new = object.__new__(TrackState)
@@ -92,3 +100,33 @@ class Hop:
         _set_lanes(new, after)
         _set_rows(new, rows)
         return new
+
+
+def _of_each(
+    state: TrackState, t: Any, sigma: Any, common: bool
+) -> tuple[Any, Array, Array] | None:
+    """Times, time steps of the tracks and sigmas of the plots, or one `common` sigma for all.
+
+    None where they are not simple; the time steps are left to be checked.
+    """
+    time, shape = state.time, state.shape
+    tracks = shape[:-1]
+    if not state.lanes.size:
+        return None
+    if isinstance(t, _NUMBERS):
+        times = np.full(np.shape(time), t, _FLOAT)[()]
+    elif type(t) is np.ndarray and t.dtype == _FLOAT and tracks and t.shape == tracks:
+        times = t.copy()
+    else:
+        return None
+    if common:
+        sigmas = np.array([sigma])
+    elif type(sigma) is np.ndarray and sigma.dtype == _FLOAT and sigma.ndim <= len(shape):
+        if any(n not in (1, m) for n, m in zip(sigma.shape[::-1], shape[::-1], strict=False)):
+            return None
+        sigmas = np.ascontiguousarray(np.broadcast_to(sigma, shape)).reshape(-1)
+        if not ((sigmas > 0.0) & (sigmas < math.inf)).all():
+            return None
+    else:
+        return None
+    return times, np.ascontiguousarray(times - time).reshape(-1), sigmas

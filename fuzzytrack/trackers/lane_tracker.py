@@ -26,16 +26,12 @@ from fuzzytrack.lanes.plots import (
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.runner import InfinitePlotError, Runner
 from fuzzytrack.reprs import constructor_code
-from fuzzytrack.trackers.compiled_step import Hop
+from fuzzytrack.trackers.compiled_step import CompiledStep
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult, checked_keep
 from fuzzytrack.trackers.state import Gains, TrackState, check_rows
 
 __all__ = ["LaneTracker", "announce", "runner"]
-
-
-#: Shapes of plots for which a tracker keeps a short way to the next state.
-_HOPS = 64
 
 
 class LaneTracker(ABC):
@@ -186,8 +182,8 @@ class LaneTracker(ABC):
         DataError, ValueError
             As for `run`.
         """
-        hop = self._hops.get(state.shape) or self._new_hop(state)
-        after = None if hop is None else hop(state, z, t, sigma)
+        step = self._compiled_steps.get(state.rows.n_axes) or self._new_compiled_step(state)
+        after = None if step is None else step(state, z, t, sigma)
         return self._one_step(state, z, t, sigma) if after is None else after
 
     def predict(
@@ -278,23 +274,21 @@ class LaneTracker(ABC):
         runner(self, n_axes if self.coupled else 1).compile()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_hops"}
+        return {name: value for name, value in self.__dict__.items() if name != "_compiled_steps"}
 
     @cached_property
-    def _hops(self) -> dict[tuple[int, ...], Hop]:
-        """Short ways to a next state, by shape of the plots."""
+    def _compiled_steps(self) -> dict[int, CompiledStep]:
+        """Short ways to a next state, by the axes of a lane."""
         return {}
 
-    def _new_hop(self, state: TrackState) -> Hop | None:
-        """Short way from states like this one, if the tracker is compiled."""
-        if len(self._hops) >= _HOPS:
-            self._hops.clear()
-        layout = PlotLayout.of((0, *state.shape), self.coupled)
-        core = runner(self, layout.lane_axes)
-        if core.hop is None:
+    def _new_compiled_step(self, state: TrackState) -> CompiledStep | None:
+        """Short way from states like this one, if the tracker is compiled and the state its own."""
+        n_axes = PlotLayout.of((0, *state.shape), self.coupled).lane_axes
+        core = runner(self, n_axes)
+        if core.own_step is None or core.rows != state.rows:
             return None
-        hop = self._hops[state.shape] = Hop(core, state.shape, layout.lanes, self.needs_sigma)
-        return hop
+        step = self._compiled_steps[n_axes] = CompiledStep(core, self.needs_sigma)
+        return step
 
     def _one_step(
         self, state: TrackState | None, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None
