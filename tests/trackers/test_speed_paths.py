@@ -14,14 +14,16 @@ import fuzzytrack as ft
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.kernels.compile import entry_point
 from fuzzytrack.lanes import runner as module
-from fuzzytrack.lanes.block_loop import compiled_run
+from fuzzytrack.lanes.block_loop import compiled_one_step, compiled_run
 from fuzzytrack.lanes.layout import BLOCK, aligned
+from fuzzytrack.schedulers import KalmanCV
 from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
 
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
 FUZZY = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
 COUPLED = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("chan-style")))
+KALMAN = ft.AlphaBetaTracker(KalmanCV(2.0))
 TRACKERS = {"fixed": FIXED, "fuzzy": FUZZY, "coupled": COUPLED}
 
 
@@ -219,6 +221,111 @@ def test_compiled_streams_check_what_they_are_given():
     spread_out = np.array([[3.0, 4.0], [0.0, 0.0]]).T[:, 0]
     for z, t in (([3, 4], 2), (np.array([3, 4]), np.float64(2.0)), (spread_out, np.array(2.0))):
         np.testing.assert_array_equal(FIXED.step(state, z, t).lanes, expected.lanes)
+
+
+def streams_of_each(times, plots, seed):
+    """Ways in which times and sigmas of a scan may come, step by step."""
+    random = np.random.default_rng(seed)
+    n_steps, tracks, _ = plots.shape
+    own = times[:, None] + random.uniform(0.0, 0.4, tracks)
+    each = random.uniform(1.0, 30.0, plots.shape)
+    common = [float(t) for t in times]
+    return {
+        "times of each track": (own, [None] * n_steps),
+        "times and sigmas of each": (own, each),
+        "sigmas of each": (common, each),
+        "sigmas of each axis": (common, each[:, 0]),
+        "sigmas of each track": (own, each[:, :, :1]),
+        "common times in the end": ([*own[:6], *common[6:]], [20.0] * n_steps),
+        "own times in the end": ([*common[:6], *own[6:]], [20.0] * n_steps),
+    }
+
+
+@pytest.mark.parametrize("way", streams_of_each(*recording(5), 0))
+@pytest.mark.parametrize("name", [*TRACKERS, "kalman"])
+def test_compiled_streams_of_tracks_with_times_of_their_own(name, way):
+    tracker = {**TRACKERS, "kalman": KALMAN}[name]
+    tracker.compile(2)
+    core = runner(tracker, 2 if tracker.coupled else 1)
+    for tracks in (1, 3, BLOCK + 7):
+        times, plots = recording(max(tracks, 5))
+        plots = plots[:, :tracks]
+        times, sigmas = streams_of_each(times, plots, 1)[way]
+        if tracker.needs_sigma and sigmas[0] is None:
+            sigmas = [5.0] * len(times)
+        state = tracker.start(plots[0], times[0], sigmas[0])
+        short = tracker._new_compiled_step(state)
+        for z, t, sigma in zip(plots[1:], times[1:], sigmas[1:], strict=True):
+            expected = plain_step(core, state, z, t, sigma)
+            found = short(state, z, t, sigma)
+            state = tracker.step(state, z, t, sigma)
+            for after in (found, state):
+                np.testing.assert_array_equal(after.lanes, expected)
+                np.testing.assert_array_equal(after.time, np.broadcast_to(t, np.shape(after.time)))
+    assert len(tracker._compiled_steps) == 1
+
+
+def plain_step(core, state, z, t, sigma):
+    """Lanes after a step in plain Python."""
+    count, n_axes = state.lanes.shape[1], core.rows.n_axes
+    tracks = z.shape[:-1]
+    dts = np.broadcast_to(t - state.time, tracks).ravel()
+    sigmas = np.broadcast_to(np.nan if sigma is None else sigma, z.shape)
+    return core.step(
+        state.lanes,
+        z.reshape(count, n_axes),
+        np.repeat(dts, count // tracks[0]).tolist(),
+        sigmas.reshape(count, n_axes).tolist(),
+    )
+
+
+def test_compiled_scans_check_what_they_are_given():
+    KALMAN.compile(2)
+    z, now = np.ones((3, 2)), np.array([1.0, 2.0, 3.0])
+    state = KALMAN.step(KALMAN.start(z, now - 1.0, 1.0), z, now, 1.0)
+    cases = {
+        r"infinite plot at index \(0, 1, 0\)": ([[0, 0], [np.inf, 0], [0, 0]], now + 1.0, 1.0),
+        r"index \(0, 2\) \(3.0 s\) is not later": (z, now + np.array([1.0, 1.0, 0.0]), 1.0),
+        r"index \(0, 1\) \(2.0 s\) is not later": (z, 2.0, 1.0),
+        "time at index 0 is not finite": (z, now + np.array([1.0, np.nan, 1.0]), 1.0),
+        r"t: shape \(1, 2\) does not fit": (z, now[:2] + 1.0, 1.0),
+        r"at index \(0, 1, 1\) it is -1": (z, now + 1.0, np.array([[1, 1], [1, -1.0], [1, 1]])),
+        "it is 0": (z, now + 1.0, 0.0),
+        "KalmanCV needs the standard deviation": (z, now + 1.0, None),
+        r"sigma: shape \(1, 3\) does not broadcast": (z, now + 1.0, np.ones(3)),
+    }
+    for message, (plots, t, sigma) in cases.items():
+        with pytest.raises(ValueError, match=message):
+            KALMAN.step(state, np.array(plots, float), t, sigma)
+    # A plot that is missed needs no sigma; and other forms of the same numbers.
+    z[1, 0] = np.nan
+    sigma = np.full((3, 2), 2.0)
+    expected = KALMAN.step(state, z, now + 1.0, sigma)
+    sigma[1, 0] = np.nan
+    others = [(sigma, now + 1.0), (2, now + 1.0), (2.0, [2.0, 3, 4]), ([2.0, 2.0], now + 1.0)]
+    for noise, t in others:
+        found = KALMAN.step(state, z, t, noise)
+        np.testing.assert_array_equal(found.lanes, expected.lanes)
+        np.testing.assert_array_equal(found.time, expected.time)
+
+
+def test_a_state_does_not_share_times_with_the_caller_of_a_compiled_step():
+    FIXED.compile(1)
+    now = np.array([1.0, 2.0])
+    state = FIXED.step(FIXED.start(np.zeros((2, 1)), 0.0), np.ones((2, 1)), now)
+    now += 5.0
+    assert state.time.tolist() == [1.0, 2.0]
+
+
+def test_scans_of_any_size_are_stepped_by_what_was_compiled():
+    FIXED.compile(2)
+    kept = [len(compiled_one_step(own).signatures) for own in (False, True)]
+    for tracks in range(1, 40):
+        state = FIXED.start(np.zeros((tracks, 2)), 0.0)
+        state = FIXED.step(state, np.ones((tracks, 2)), np.full(tracks, 1.0), np.ones((tracks, 2)))
+        FIXED.step(state, np.ones((tracks, 2)), 2.0)
+    assert [len(compiled_one_step(own).signatures) for own in (False, True)] == kept == [1, 1]
+    assert len(FIXED._compiled_steps) == 1
 
 
 def test_a_state_has_as_many_numbers_as_its_plots_need():
