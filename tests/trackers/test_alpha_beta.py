@@ -396,7 +396,7 @@ def test_sigma_may_be_missing_where_the_plot_is():
 def test_arguments_of_the_tracker():
     with pytest.raises(ValueError, match="n_axes must be at least 1, got 0"):
         ft.AlphaBetaTracker(FIXED).compile(0)
-    with pytest.raises(TypeError, match=r"scheduler must be a GainScheduler, or a text .*got float"):
+    with pytest.raises(TypeError, match=r"scheduler must be a GainScheduler, or a .*got float"):
         ft.AlphaBetaTracker(0.5)
     with pytest.raises(ValueError, match="start: unknown 'three-point'; one of two-point"):
         ft.AlphaBetaTracker(FIXED, start="three-point")
