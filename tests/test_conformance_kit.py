@@ -10,6 +10,7 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.schedulers import GainScheduler, KalmanCV
 from fuzzytrack.testing import check_scheduler, check_tracker, checks_for, parametrize_with_checks
+from fuzzytrack.trackers import LaneProgram, LaneTracker, Rows, single_axis_step
 
 
 def scheduler_of(kernel, memory=(), **attributes):
@@ -231,8 +232,26 @@ def test_a_kernel_uses_numbers_only(name, what):
     text = str(caught.value)
     line = int(text.removeprefix("kernel-uses-numbers-only: line ").partition(" ")[0])
     assert first < line <= first + 3
-    assert f"of test_conformance_kit.py: the kernel {what}; it may use numbers, tuples" in text
+    name = where.__name__
+    assert f"of test_conformance_kit.py: the function {name} {what}; it may use numbers" in text
     assert "\n" not in text
+
+
+def test_the_step_of_a_tracker_uses_numbers_only():
+    @dataclass(frozen=True)
+    class OfSelf(LaneTracker):
+        alpha: float = 0.5
+
+        def program(self, n_axes):
+            rows = Rows(n_axes, 0)
+
+            def correct(b, lane, z, prediction, velocity, dt, gap, sigma, update, starts):
+                return prediction, self.alpha * z, velocity, self.alpha, 0.1
+
+            return LaneProgram(rows, (), lambda stride: single_axis_step(rows, stride, correct))
+
+    with pytest.raises(AssertionError, match=r"the function correct uses 'self\.alpha', where"):
+        run_check("program-uses-numbers-only", OfSelf())
 
 
 def test_what_a_kernel_may_use():
@@ -294,7 +313,7 @@ def test_checks_have_names():
     assert len(set(names)) == len(names)
     assert {"batch-equals-single", "streaming-equals-run", "gains-are-stable"} <= set(names)
     tracker = [check.name for check in checks_for(ft.AlphaBetaTracker(KalmanCV(0.5)))]
-    assert set(tracker) < set(names)
+    assert set(tracker) - set(names) == {"program-uses-numbers-only"}
     assert "compiled-equals-plain" in tracker
     assert "compiled-equals-plain" not in [check.name for check in checks_for(Faulty())]
 

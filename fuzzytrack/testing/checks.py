@@ -88,7 +88,7 @@ def checks_for(subject: GainScheduler | Tracker, seed: int = 0) -> Iterator[Chec
         named = SCHEDULER_CHECKS
     else:
         _expect_a_tracker(subject)
-        named = {**TRACKER_CHECKS, **(LANE_CHECKS if isinstance(subject, LaneTracker) else {})}
+        named = LANE_CHECKS if isinstance(subject, LaneTracker) else TRACKER_CHECKS
     for name, promise in named.items():
         yield Check(name, subject, promise, seed)
 
@@ -128,8 +128,8 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     `predict` equals a step with a missed plot and tells the innovation variance of
     `fuzzytrack.trackers.covariance.track_covariance` where that knows the model, pickling of the
     state in the middle of a track, determinism, that inputs are left alone, that bad input
-    raises ValueError, and of a `fuzzytrack.trackers.lane_tracker.LaneTracker` that it gives the
-    same to the last bit when compiled.
+    raises ValueError, and of a `fuzzytrack.trackers.LaneTracker` that it is a value, what its step
+    is written with, and that it gives the same to the last bit when compiled.
 
     Parameters
     ----------

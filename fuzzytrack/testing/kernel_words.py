@@ -1,4 +1,4 @@
-"""What a kernel refers to that cannot be compiled, found in its code before a compiler sees it."""
+"""What a function refers to that cannot be compiled, found before a compiler sees it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def foreign_word(function: FunctionType | Any) -> str | None:
     Parameters
     ----------
     function : function
-        A kernel.
+        A kernel, or the step of a tracker.
 
     Returns
     -------
@@ -65,8 +65,8 @@ def _complaint(
         what = _use(word, following, scope.get(word, _UNKNOWN))
     file, line = Path(function.__code__.co_filename).name, instruction.positions.lineno
     return (
-        f"line {line} of {file}: the kernel {what}; it may use {_ALLOWED}: put what it needs into "
-        "variables before the function, and what it remembers into its memory"
+        f"line {line} of {file}: the function {function.__name__} {what}; it may use {_ALLOWED}: "
+        "put what it needs into variables before it, and what it remembers into the memory"
     )
 
 

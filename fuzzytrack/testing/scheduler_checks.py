@@ -13,7 +13,12 @@ from fuzzytrack.gains.stability import in_closed_region
 from fuzzytrack.schedulers.base import GainScheduler, Memory
 from fuzzytrack.testing.kernel_words import foreign_word
 from fuzzytrack.testing.samples import AXES, SIGMA, arrays, expect, expect_same, sample_plots
-from fuzzytrack.testing.tracker_checks import TRACKER_CHECKS, compiled_equals_plain
+from fuzzytrack.testing.tracker_checks import (
+    TRACKER_CHECKS,
+    compiled_equals_plain,
+    equals_pickled_copy,
+    hashable,
+)
 from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 
 __all__ = ["SCHEDULER_CHECKS"]
@@ -22,27 +27,6 @@ _ARGUMENTS = ("innovation", "change", "dt", "sigma", "memory")
 #: Innovations and changes of observation (m): none, tiny, ordinary and absurd.
 _MAGNITUDES = (0.0, 1e-12, 1.0, -3.0, 50.0, -1e9)
 _DT = 0.5
-
-
-def hashable(scheduler: GainScheduler, seed: int) -> None:
-    """It can be a key, by which compiled code is found again."""
-    name = type(scheduler).__name__
-    try:
-        hash(scheduler)
-    except TypeError:
-        raise AssertionError(f"{name} must be hashable: make it a frozen dataclass") from None
-
-
-def equals_pickled_copy(scheduler: GainScheduler, seed: int) -> None:
-    """It can be sent to another process, and is known there for the same."""
-    name = type(scheduler).__name__
-    try:
-        copy = pickle.loads(pickle.dumps(scheduler))
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise AssertionError(
-            f"{name} must pickle ({error}): define the class at the top of a module"
-        ) from None
-    expect(copy == scheduler, f"{name} must equal its pickled copy: make it a frozen dataclass")
 
 
 def kernel_takes_five_arguments(scheduler: GainScheduler, seed: int) -> None:

@@ -1,4 +1,4 @@
-"""What every tracker promises, a function a promise."""
+"""What every tracker promises, and every `LaneTracker`, a function a promise."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.testing.kernel_words import foreign_word
 from fuzzytrack.testing.prediction_checks import (
     predict_equals_missed_plot,
     variance_equals_track_covariance,
@@ -26,7 +28,40 @@ from fuzzytrack.testing.samples import (
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker, runner
 
-__all__ = ["LANE_CHECKS", "TRACKER_CHECKS", "compiled_equals_plain"]
+__all__ = [
+    "LANE_CHECKS",
+    "TRACKER_CHECKS",
+    "compiled_equals_plain",
+    "equals_pickled_copy",
+    "hashable",
+]
+
+
+def hashable(subject: GainScheduler | LaneTracker, seed: int) -> None:
+    """It can be a key, by which compiled code is found again."""
+    name = type(subject).__name__
+    try:
+        hash(subject)
+    except TypeError:
+        raise AssertionError(f"{name} must be hashable: make it a frozen dataclass") from None
+
+
+def equals_pickled_copy(subject: GainScheduler | LaneTracker, seed: int) -> None:
+    """It can be sent to another process, and is known there for the same."""
+    name = type(subject).__name__
+    try:
+        copy = pickle.loads(pickle.dumps(subject))
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise AssertionError(
+            f"{name} must pickle ({error}): define the class at the top of a module"
+        ) from None
+    expect(copy == subject, f"{name} must equal its pickled copy: make it a frozen dataclass")
+
+
+def program_uses_numbers_only(tracker: LaneTracker, seed: int) -> None:
+    """The step, and what it calls, refers to nothing that cannot be compiled."""
+    found = foreign_word(tracker.program(AXES if tracker.coupled else 1).step(1))
+    expect(found is None, str(found))
 
 
 def same_plots_give_the_same_track(tracker: Tracker, seed: int) -> None:
@@ -160,7 +195,11 @@ TRACKER_CHECKS: dict[str, Callable[[Any, int], None]] = {
     "bad-input-refused": bad_input_is_refused,
 }
 
-#: Checks of a `LaneTracker` besides, by name.
+#: Checks of a `LaneTracker`, by name.
 LANE_CHECKS: dict[str, Callable[[Any, int], None]] = {
-    "compiled-equals-plain": compiled_equals_plain
+    "hashable": hashable,
+    "equals-pickled-copy": equals_pickled_copy,
+    "program-uses-numbers-only": program_uses_numbers_only,
+    **TRACKER_CHECKS,
+    "compiled-equals-plain": compiled_equals_plain,
 }
