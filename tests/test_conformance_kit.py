@@ -3,14 +3,16 @@
 import math
 import random
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import fuzzytrack as ft
-from fuzzytrack.schedulers import GainScheduler, KalmanCV
+from fuzzytrack.normalizations import normalizations
+from fuzzytrack.schedulers import GainScheduler, KalmanCV, schedulers
 from fuzzytrack.testing import check_scheduler, check_tracker, checks_for, parametrize_with_checks
-from fuzzytrack.trackers import LaneProgram, LaneTracker, Rows, single_axis_step
+from fuzzytrack.trackers import LaneProgram, LaneTracker, Rows, single_axis_step, trackers
 
 
 def scheduler_of(kernel, memory=(), **attributes):
@@ -316,6 +318,14 @@ def test_checks_have_names():
     assert set(tracker) - set(names) == {"program-uses-numbers-only"}
     assert "compiled-equals-plain" in tracker
     assert "compiled-equals-plain" not in [check.name for check in checks_for(Faulty())]
+
+
+def test_the_page_lists_every_check_and_every_kind_of_plugin():
+    page = (Path(__file__).resolve().parents[1] / "docs" / "plugins.md").read_text()
+    for subject in (ft.FixedGains(0.5, 0.2), ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2))):
+        assert [check.name for check in checks_for(subject) if f"`{check.name}`" not in page] == []
+    for registry in (schedulers, trackers, normalizations):
+        assert f"| `{registry.group}` |" in page
 
 
 @parametrize_with_checks({"good": ft.FixedGains(0.5, 0.2)})
