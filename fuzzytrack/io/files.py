@@ -1,4 +1,4 @@
-"""Files written whole or not at all."""
+"""Files and folders that appear whole or not at all."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pathlib import Path
 
 from fuzzytrack.errors import DataError
 
-__all__ = ["check_output", "whole_file"]
+__all__ = ["PathLike", "check_output", "check_output_folder", "whole_file", "whole_folder"]
 
 PathLike = str | os.PathLike[str]
 
 
 def check_output(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Path:
-    """Look ahead whether a file can be written, before the work is done.
+    """Check that a file can be written, before the work is done.
 
     Parameters
     ----------
@@ -46,11 +46,44 @@ def check_output(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Path:
         raise IsADirectoryError(None, "is a folder, not a file", str(path))
     if target.exists() and not target.is_file():
         raise OSError(None, "is not an ordinary file", str(path))
+    _check_parent(path, target)
+    return target
+
+
+def check_output_folder(path: PathLike) -> Path:
+    """Check that a folder can be made, before the work is done.
+
+    Parameters
+    ----------
+    path : str or path
+        The folder; it need not exist.
+
+    Returns
+    -------
+    Path
+        The folder, with symbolic links followed.
+
+    Raises
+    ------
+    DataError
+        If it exists and is not empty.
+    OSError
+        If it cannot be made, or is a file.
+    """
+    target = Path(path).resolve()
+    if target.exists() and not target.is_dir():
+        raise NotADirectoryError(None, "is not a folder", str(path))
+    if target.is_dir() and any(target.iterdir()):
+        raise DataError(f"{path}: holds files already; choose another folder")
+    _check_parent(path, target)
+    return target
+
+
+def _check_parent(path: PathLike, target: Path) -> None:
     if not target.parent.is_dir():
         raise FileNotFoundError(None, f"there is no folder {target.parent}", str(path))
     if not os.access(target.parent, os.W_OK):
         raise PermissionError(None, f"folder {target.parent} cannot be written to", str(path))
-    return target
 
 
 @contextmanager
@@ -84,3 +117,34 @@ def whole_file(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Iterator[Pa
         os.replace(draft, target)
     finally:
         draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(path: PathLike) -> Iterator[Path]:
+    """Write a folder whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+        The folder; it must not exist, or be empty.
+
+    Yields
+    ------
+    Path
+        A draft beside it, to be filled. When the block ends it takes the place of the folder; if
+        the block fails it is removed.
+
+    Raises
+    ------
+    DataError, OSError
+        See `check_output_folder`.
+    """
+    target = check_output_folder(path)
+    draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    draft.mkdir()
+    try:
+        yield draft
+        os.replace(draft, target)
+    finally:
+        # A task that could not be stopped may still write into it.
+        shutil.rmtree(draft, ignore_errors=True)

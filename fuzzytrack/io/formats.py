@@ -126,7 +126,7 @@ def _format_of_output(path: PathLike) -> Format:
 
 
 def check_table(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
-    """Look ahead whether a table can be written, before the work is done.
+    """Check that a table can be written, before the work is done.
 
     Parameters
     ----------

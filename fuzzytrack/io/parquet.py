@@ -30,7 +30,7 @@ _BUFFER = 1 << 20
 
 
 def check(file: str) -> None:
-    """Look ahead whether Parquet can be read and written; DataError if not."""
+    """Check that pyarrow is installed; DataError if not."""
     import_pyarrow(file)
 
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fuzzytrack.io.columns import Columns
-from fuzzytrack.io.files import PathLike
+from fuzzytrack.io.files import PathLike, check_output_folder
 from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
 from fuzzytrack.io.table import no_rows
-from fuzzytrack.recordings.partitions import check_output_folder, track_partitions
+from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress

@@ -1,20 +1,18 @@
-"""Recordings tracked in partitions: on one core, on many, or on a cluster."""
+"""Recordings tracked in partitions, as tasks for one core, many cores or a cluster."""
 
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.files import PathLike, whole_folder
 from fuzzytrack.io.recording import ROWS, read_pieces
 from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partition_files import read_partition, write_partitions
@@ -23,7 +21,7 @@ from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 
-__all__ = ["check_output_folder", "track_partitions"]
+__all__ = ["track_partitions"]
 
 Part = TypeVar("Part")
 
@@ -51,7 +49,7 @@ def track_partitions(
     tracker: LaneTracker,
     files: Sequence[str],
     columns: Columns,
-    output: str | os.PathLike[str],
+    output: PathLike,
     *,
     sigma: float | None = None,
     partitions: int = 16,
@@ -70,7 +68,7 @@ def track_partitions(
     columns : Columns
         From `fuzzytrack.io.find_columns`.
     output : str or path
-        Folder that is made, with one Parquet file a partition, ``part-00000.parquet`` and on; see
+        Folder to be made, with one Parquet file a partition, ``part-00000.parquet`` and on; see
         `fuzzytrack.recordings.track_writer`. It appears whole or not at all.
     sigma : float, optional
         Standard deviation of the plots (m).
@@ -79,8 +77,8 @@ def track_partitions(
     rows : int
         Rows that a task holds at a time.
     executor : concurrent.futures.Executor, optional
-        Does the work; its workers see the same files under the same names. One task after the other
-        in this process unless given.
+        Runs the tasks; its workers must find the same files under the same names. Unless given, the
+        tasks run in this process, one after the other.
     progress : callable, optional
         Called with the share of the tasks that are done.
 
@@ -91,23 +89,23 @@ def track_partitions(
     Raises
     ------
     DataError, ValueError, OSError
-        As `fuzzytrack.io.read_pieces`, `fuzzytrack.recordings.run_iter` and `check_output_folder`.
+        As `fuzzytrack.io.read_pieces`, `fuzzytrack.recordings.run_iter` and
+        `fuzzytrack.io.files.whole_folder`.
 
     Notes
     -----
     First each input file is sorted into partitions, a task a file; then each partition is tracked
     through all files, a task a partition, with the states of its own tracks only. A task reads
-    files and writes one, whole or not at all, so it can be done again anywhere: a worker that is
-    lost costs the time of its task. The disk holds the plots a second time until the end.
+    files and writes one, whole or not at all, so it can be repeated on any worker when the first
+    one is lost. Until the end the disk holds a second copy of the plots.
 
-    The rows of a track are in one file, in order of time, with the numbers of one run; those of
-    different tracks are mixed as the recording has them.
+    All rows of a track are in one file, in order of time, with the same numbers as in one run; rows
+    of different tracks are in the order of the recording.
     """
     if partitions < 1:
         raise ValueError(f"partitions must be at least 1, got {partitions}")
-    target = check_output_folder(output)
     totals = Totals()
-    with _whole_folder(target) as draft:
+    with whole_folder(output) as draft:
         job = _Job(
             tracker,
             sigma,
@@ -123,39 +121,19 @@ def track_partitions(
         found = sum(rows for _, rows in steps.counted(run_tasks(sort, range(len(files)), executor)))
         job = replace(job, expected=found // partitions)
         track = partial(_track_partition, job)
-        for _, part in steps.counted(run_tasks(track, range(partitions), executor)):
-            totals.merge(part)
+        parts = dict(steps.counted(run_tasks(track, range(partitions), executor)))
+        # In this order, whatever the order in which tasks finish: rounding depends on it.
+        for partition in range(partitions):
+            totals.merge(parts[partition])
         if not totals.tracks:
             raise no_rows(files[0])
         _keep_only(draft, {job.part(number) for number in range(partitions)})
     return totals
 
 
-def check_output_folder(path: str | os.PathLike[str]) -> Path:
-    """Look ahead whether a folder can be made.
-
-    Raises
-    ------
-    DataError
-        If it exists and is not empty.
-    OSError
-        If it cannot be made, or is a file.
-    """
-    target = Path(path).resolve()
-    if target.exists() and not target.is_dir():
-        raise NotADirectoryError(None, "is not a folder", str(path))
-    if target.is_dir() and any(target.iterdir()):
-        raise DataError(f"{path}: holds files already; choose another folder")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(None, f"there is no folder {target.parent}", str(path))
-    if not os.access(target.parent, os.W_OK):
-        raise PermissionError(None, f"folder {target.parent} cannot be written to", str(path))
-    return target
-
-
 @dataclass
 class _Steps:
-    """Tells how much of the work is done."""
+    """Progress of a number of tasks."""
 
     total: int
     progress: Progress | None
@@ -170,24 +148,12 @@ class _Steps:
 
 
 def _keep_only(folder: Path, parts: set[Path]) -> None:
-    """Remove what was sorted, and what a lost worker had begun to write."""
+    """Remove the sorted files, and files that a lost worker left unfinished."""
     for path in folder.iterdir():
         if path.is_dir():
             shutil.rmtree(path)
         elif path not in parts:
             path.unlink(missing_ok=True)
-
-
-@contextmanager
-def _whole_folder(target: Path) -> Iterator[Path]:
-    draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
-    draft.mkdir()
-    try:
-        yield draft
-        os.replace(draft, target)
-    finally:
-        # A task that could not be stopped may still write into it.
-        shutil.rmtree(draft, ignore_errors=True)
 
 
 # -------------------------------------------------------------------- tasks
@@ -201,7 +167,7 @@ def _sort_file(job: _Job, number: int) -> int:
 
 def _track_partition(job: _Job, partition: int) -> Totals:
     n_axes = len(job.columns.axes)
-    # A worker new to the tracker compiles it at once, if the work is worth it.
+    # A worker that has not run the tracker yet compiles it at once, if the work is large enough.
     announce(job.tracker, n_axes, n_axes * job.expected)
     pieces = (
         piece

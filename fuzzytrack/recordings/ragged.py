@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.result import TrackResult
@@ -30,10 +31,10 @@ class Batch:
     members : ndarray of int, shape (n_tracks,)
         Which tracks.
     times : ndarray, shape (n_steps, n_tracks)
-        Their times (s); going on beyond the end of a shorter track.
+        Their times (s); those of a shorter track continue beyond its end.
     places : ndarray of int, shape (n_steps, n_tracks)
-        Where their scans lie when all scans of all tracks are put one after the other; padding lies
-        just after the last.
+        Positions of their scans in the sequence of all scans of all tracks; those of the padding
+        are one beyond its end.
     """
 
     members: NDArray[np.int64]
@@ -52,7 +53,7 @@ def batches(times: Sequence[Array]) -> tuple[Batch, ...]:
     Returns
     -------
     tuple of Batch
-        Longest tracks first; each track in one of them.
+        The longest tracks first; each track is in one batch.
     """
     lengths = np.array([len(t) for t in times], dtype=np.int64)
     starts = np.cumsum(lengths) - lengths
@@ -74,7 +75,7 @@ def _padded(t: Array, length: int) -> Array:
     spare = length - len(t)
     if not spare or not len(t):
         return t
-    # Large enough to be felt beside any time.
+    # Large enough to change a time of any size.
     step = max(1.0, 1e-9 * abs(float(t[-1])))
     return np.concatenate([t, t[-1] + step * np.arange(1, spare + 1)])
 
@@ -83,9 +84,9 @@ def run_tracks(
     tracker: Tracker | str,
     tracks: Sequence[tuple[Array, Array]],
     sigma: ArrayLike | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[TrackResult]:
-    """Run a tracker over many tracks, with the same numbers as one by one, only faster.
+    """Run a tracker over many tracks in batches, with the same results as one by one, but faster.
 
     Parameters
     ----------

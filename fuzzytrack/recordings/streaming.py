@@ -1,4 +1,4 @@
-"""Recordings larger than memory: tracked piece by piece, with the numbers of one run."""
+"""Recordings larger than memory: tracked piece by piece, with the same results as in one run."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class TrackedPiece:
     piece : Piece
         The piece.
     outputs : mapping of str to ndarray, shape (n_rows, n_axes)
-        What was kept, row by row as the piece: predicted, filtered, velocity, acceleration,
-        innovation, and alpha, beta, gamma; see `fuzzytrack.TrackResult`.
+        The outputs that were asked for, for each row of the piece: predicted, filtered, velocity,
+        acceleration, innovation, and alpha, beta, gamma; see `fuzzytrack.TrackResult`.
     """
 
     piece: Piece
@@ -50,8 +50,8 @@ def run_iter(
     tracker : LaneTracker
         The tracker: any of this package.
     pieces : iterable of Piece
-        Rows of any tracks, irregularly mixed; the rows of a track, which may go on from piece to
-        piece, in order of time. See `fuzzytrack.io.read_pieces`.
+        Rows of any tracks in any order, but the rows of each track in order of time. A track may
+        continue from piece to piece. See `fuzzytrack.io.read_pieces`.
     sigma : float, optional
         Standard deviation of the plots (m).
     keep : sequence of str, optional
@@ -61,18 +61,19 @@ def run_iter(
     Yields
     ------
     TrackedPiece
-        One a piece, in their order; equal to the last bit to each track run by itself, at once.
+        One for each piece, in their order; every row is equal, to the last bit, to that of its track
+        run as a whole.
 
     Raises
     ------
     DataError
         If a plot is infinite, or the times of a track do not increase; names identity and time.
     ValueError
-        If `keep` names what there is not, the number of axes changes, or the tracker needs `sigma`.
+        If `keep` names an unknown output, the number of axes changes, or the tracker needs `sigma`.
 
     Notes
     -----
-    Holds one piece, its outputs, and the state of every track that has been seen: ``8·rows.kept``
+    Holds one piece, its outputs, and the state of every track so far: ``8·rows.kept``
     bytes a lane (see `fuzzytrack.lanes.layout.Rows`), and about 250 bytes a track for its identity
     and time.
 
@@ -94,7 +95,7 @@ def run_iter(
 
 
 class OpenTracks:
-    """The states of many tracks, which go on together.
+    """The states of many tracks that continue from piece to piece.
 
     Parameters
     ----------
@@ -104,7 +105,7 @@ class OpenTracks:
     Raises
     ------
     ValueError
-        If `keep` names what there is not.
+        If `keep` names an unknown output.
     """
 
     def __init__(
@@ -120,7 +121,7 @@ class OpenTracks:
         self._first = np.empty(0)
 
     def __len__(self) -> int:
-        """Tracks that were seen so far."""
+        """Number of tracks so far."""
         return len(self._slot)
 
     @property
@@ -141,7 +142,7 @@ class OpenTracks:
         Raises
         ------
         DataError, ValueError
-            As for `run_iter`; the tracks are then of no more use.
+            As for `run_iter`. Make new tracks then: some may have been advanced, others not.
         """
         names = [name for kept in self._keep for name in (GAINS if kept == "gains" else (kept,))]
         outputs = {name: np.empty(piece.plots.shape) for name in names}
@@ -172,7 +173,7 @@ class OpenTracks:
         last = np.full(len(slots), math.nan)
         last[~new] = store.time(slots[~new])
         _check_times(piece, order, starts, last)
-        # Only tracks with as many plots can go on together: padding would be remembered.
+        # Only tracks with equally many plots run together: padding would change their states.
         kinds = 2 * counts + new
         by_kind = np.argsort(kinds, kind="stable")
         cuts = np.flatnonzero(np.diff(kinds[by_kind])) + 1
