@@ -66,6 +66,16 @@ def test_only_kernels_imports_numba():
     assert found == {"kernels"}
 
 
+def test_only_the_command_line_names_its_options():
+    option = re.compile(r"(?<![\w-])--[a-z]|[ \"]-o ")
+    found = {
+        str(path.relative_to(PACKAGE))
+        for path in PACKAGE.rglob("*.py")
+        if option.search(path.read_text(encoding="utf-8"))
+    }
+    assert {path for path in found if not path.startswith("cli/")} == set()
+
+
 # -------------------------------------------------------------------- names
 
 # A normalization shares its file with its variants: the first word of its name is the file's.

@@ -61,8 +61,8 @@ def run_iter(
     Yields
     ------
     TrackedPiece
-        One for each piece, in their order; every row is equal, to the last bit, to that of its track
-        run as a whole.
+        One for each piece, in their order; every row is equal, to the last bit, to the same row of
+        its track run as a whole.
 
     Raises
     ------

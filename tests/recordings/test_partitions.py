@@ -113,3 +113,14 @@ def test_errors_name_the_row_of_the_recording(files, tmp_path):
 def test_partitions_at_least_one(files, tmp_path):
     with pytest.raises(ValueError, match="partitions must be at least 1, got 0"):
         track_partitions(TRACKER, files, find_columns(files), tmp_path / "out", partitions=0)
+
+
+def test_totals_do_not_depend_on_the_order_in_which_tasks_finish(files, tmp_path, monkeypatch):
+    columns = find_columns(files, id="id")
+    original = partitions_module.run_tasks
+    forth = track_partitions(TRACKER, files, columns, tmp_path / "forth", partitions=7)
+    monkeypatch.setattr(
+        partitions_module, "run_tasks", lambda *given: reversed(list(original(*given)))
+    )
+    back = track_partitions(TRACKER, files, columns, tmp_path / "back", partitions=7)
+    assert back == forth

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
 from fuzzytrack.io.recording import Piece
 from fuzzytrack.recordings.streaming import OpenTracks, run_iter
-from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.trackers.catalog import make_tracker
 
 FIXED = AlphaBetaTracker(FixedGains(0.5, 0.2))
@@ -141,23 +140,3 @@ def test_axes_that_change():
     pieces = [Piece.of([1], [0], [[0.0]]), Piece.of([1], [1], [[0.0, 1.0]])]
     with pytest.raises(ValueError, match="plots: 2 axes; the pieces before have 1"):
         last(pieces)
-
-
-def test_totals_by_hand():
-    tracks, whole = OpenTracks(FIXED), Totals()
-    for piece in (
-        Piece.of(["a", "b", "a"], [0, 5, 1], [[0.0], [7.0], [10.0]]),
-        Piece.of(["a", "b", "a"], [2, 6, 4], [[19.0], [math.nan], [40.0]]),
-    ):
-        whole.add(tracks.advance(piece))
-    whole.close(len(tracks), tracks.duration)
-    assert (whole.tracks, whole.plots, whole.missed, whole.duration) == (2, 5, 1, 5.0)
-    # a: 20 is predicted for 19; then x = 19.5, v = 9.8, and 39.1 for 40
-    assert whole.squares[0] == pytest.approx(1 + 0.81)
-    assert whole.summary["innovation_rms"] == pytest.approx(math.sqrt(1.81 / 2))
-    assert whole.summary["alpha"] == 0.5
-    both = Totals()
-    both.merge(whole)
-    both.merge(whole)
-    assert (both.tracks, both.plots, both.summary["beta"]) == (4, 10, pytest.approx(0.2))
-    assert math.isnan(Totals().summary["alpha"])

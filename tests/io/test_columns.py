@@ -1,0 +1,21 @@
+import pytest
+from data_files import written
+
+from fuzzytrack import DataError
+from fuzzytrack.io import read_tracks
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"time": "tt"}, "`time`: no column 'tt'; did you mean 't'"),
+        ({"axes": ["x", "q"]}, "`axes`: no column 'q'; allowed: t, id, x"),
+        ({"axes": []}, "`axes`: needs at least one"),
+        ({"id": "ID"}, "`id`: no column 'ID'; did you mean 'id'"),
+        ({"axes": ["x", "x"]}, "column 'x' cannot serve twice"),
+        ({"id": "id"}, "row 3, column id: an empty cell; expected some text"),
+    ],
+)
+def test_bad_columns(tmp_path, columns, message):
+    with pytest.raises(DataError, match=message):
+        read_tracks(written(tmp_path, "t,id,x\n0,a,0\n1,,0\n"), **columns)

@@ -1,0 +1,26 @@
+import numpy as np
+import pytest
+from data_files import written
+
+from fuzzytrack.io import check_output, write_table
+
+
+def test_replacing_keeps_the_mode_and_follows_links(tmp_path):
+    path = written(tmp_path, "old", "out.csv")
+    path.chmod(0o640)
+    (tmp_path / "link.csv").symlink_to(path)
+    write_table(tmp_path / "link.csv", {"a": np.array([1.0])})
+    assert path.read_text() == "a\n1.0\n"
+    assert path.stat().st_mode & 0o777 == 0o640
+    assert (tmp_path / "link.csv").is_symlink()
+
+
+def test_only_ordinary_files_are_written():
+    with pytest.raises(OSError, match="ordinary file"):
+        check_output("/dev/null")
+
+
+def test_a_folder_that_cannot_be_written_to(tmp_path, monkeypatch):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(PermissionError, match="cannot be written to"):
+        write_table(tmp_path / "a.csv", {"a": np.array([1.0])})

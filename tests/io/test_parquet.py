@@ -1,0 +1,143 @@
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from data_files import XY, parquet, written
+
+from fuzzytrack import DataError
+from fuzzytrack.io import Columns, find_columns, read_pieces, read_tracks
+
+
+def test_parquet(tmp_path):
+    path = parquet(tmp_path / "f.parquet", [7, 7, 7], [0, 1, 2], [0.5, None, math.nan])
+    (track,) = read_tracks(path, id="id").tracks
+    assert track.id == "7"
+    np.testing.assert_array_equal(track.plots[:, 0], [0.5, math.nan, math.nan])
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"t": [0, 1], "x": ["1", "q"]}, "row 2, column x: 'q'"),
+        ({"t": [0, None], "x": [1, 2]}, "row 2, column t: 'nan'; expected a finite number$"),
+        ({"t": [0, 1], "x": [1.0, math.inf]}, "row 2, column x: 'inf'"),
+    ],
+)
+def test_bad_parquet(tmp_path, columns, message):
+    path = tmp_path / "f.pq"
+    pq.write_table(pa.table(columns), path)
+    with pytest.raises(DataError, match=message):
+        read_tracks(path)
+
+
+@pytest.mark.parametrize(
+    "ids",
+    [
+        pa.array([" a", "b", "a "]),
+        pa.array(["a", "b", "a"]).dictionary_encode(),
+        pa.array([" a", "b", "a"], type=pa.large_string()),
+    ],
+)
+def test_words_of_any_type(tmp_path, ids):
+    path = parquet(tmp_path / "f.parquet", ids, [0, 0, 1], [1.0, 2.0, 3.0])
+    (piece,) = read_pieces([path], XY)
+    assert piece.ids.names == ("a", "b")
+    np.testing.assert_array_equal(piece.ids.codes, [0, 1, 0])
+
+
+def test_numbers_as_text(tmp_path):
+    path = parquet(tmp_path / "f.parquet", ["a", "a"], [0, 1], ["1.5", "na"], [1.0, 2.0])
+    (piece,) = read_pieces([path], XY)
+    np.testing.assert_array_equal(piece.plots, [[1.5, 1], [math.nan, 2]])
+
+
+def test_what_is_no_parquet(tmp_path):
+    with pytest.raises(DataError, match="is not a Parquet file"):
+        read_tracks(written(tmp_path, "t,x\n0,0\n", "f.parquet"))
+
+
+def test_broken_files(tmp_path):
+    bad = tmp_path / "f.parquet"
+    bad.write_bytes(b"PAR1 no")
+    with pytest.raises(DataError, match="is not a Parquet file"):
+        find_columns([str(bad)])
+    with pytest.raises(DataError, match="is not a Parquet file"):
+        list(read_pieces([str(bad)], XY))
+
+
+def test_a_broken_page_names_its_file(tmp_path):
+    path = Path(parquet(tmp_path / "f.parquet", ["a"] * 3, [0.0, 1.0, 2.0], [0.0] * 3, [0.0] * 3))
+    content = bytearray(path.read_bytes())
+    pages = len(content) - 8 - int.from_bytes(content[-8:-4], "little")
+    content[4:pages] = b"\xff" * (pages - 4)
+    path.write_bytes(content)
+    with pytest.raises(DataError, match=r"f\.parquet: is not a Parquet file that can be read"):
+        list(read_pieces([str(path)], XY))
+    with pytest.raises(DataError, match=r"f\.parquet: is not a Parquet file that can be read"):
+        read_tracks(path, time="t", axes=["x", "y"])
+
+
+def test_parquet_without_pyarrow(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(DataError, match=r"pip install 'fuzzytrack\[parquet\]'"):
+        read_tracks(tmp_path / "f.parquet")
+
+
+def test_one_large_row_group_is_not_read_at_once(tmp_path):
+    n = 2_000_000
+    path = tmp_path / "f.parquet"
+    numbers = np.random.default_rng(1).random(n)
+    pq.write_table(
+        pa.table({"t": np.arange(n), "x": numbers}), path, row_group_size=n, use_dictionary=False
+    )
+    assert pq.ParquetFile(path).num_row_groups == 1
+    before, highest = pa.total_allocated_bytes(), 0
+    for piece in read_pieces([str(path)], Columns("t", "", ("x",)), rows=50_000):
+        assert len(piece.time) == 50_000
+        highest = max(highest, pa.total_allocated_bytes() - before)
+    assert highest < 2 * n * 8 / 3
+
+
+def test_words_of_a_dictionary_that_are_not_used(tmp_path):
+    codes = pa.array([2, 0, None, 2], pa.int32())
+    ids = pa.DictionaryArray.from_arrays(codes, pa.array(["a", "", "b "]))
+    path = parquet(
+        tmp_path / "f.parquet", ids.take(pa.array([0, 1, 3])), [0, 0, 1], [1.0, 2.0, 3.0]
+    )
+    (piece,) = read_pieces([path], XY)
+    assert piece.ids.names == ("b", "a")
+    assert list(piece.ids) == ["b", "a", "b"]
+    assert [track.id for track in read_tracks(path, id="id").tracks] == ["b", "a"]
+    path = parquet(tmp_path / "g.parquet", ids, [0, 0, 1, 1], [1.0, 2.0, 3.0, 4.0])
+    for read in (lambda: list(read_pieces([path], XY)), lambda: read_tracks(path, id="id")):
+        with pytest.raises(DataError, match="row 3, column id: an empty cell; expected some text"):
+            read()
+
+
+def test_the_first_empty_word_is_named(tmp_path):
+    path = parquet(tmp_path / "f.parquet", ["a", " ", None], [0, 1, 2], [1.0, 2.0, 3.0])
+    with pytest.raises(DataError, match="row 2, column id: an empty cell"):
+        read_tracks(path, id="id")
+
+
+def test_decimals_and_whole_numbers_with_gaps(tmp_path):
+    from decimal import Decimal
+
+    x = pa.array([Decimal("1.25"), None, Decimal("-3.00")])
+    path = parquet(tmp_path / "f.parquet", ["a"] * 3, [0, 1, 2], x, pa.array([7, 8, None]))
+    (track,) = read_tracks(path).tracks
+    np.testing.assert_array_equal(track.plots, [[1.25, 7], [math.nan, 8], [-3, math.nan]])
+
+
+@pytest.mark.parametrize("row_group_size", [1, 2, 100])
+def test_a_whole_file_is_one_piece(tmp_path, row_group_size):
+    ids = pa.array(["b", "a", "b", "c", "a"])
+    path = parquet(tmp_path / "f.parquet", ids, range(5), np.arange(5.0), None, row_group_size)
+    (piece,) = read_pieces([path], XY, rows=None)
+    assert piece.ids.names == ("b", "a", "c")
+    assert list(piece.ids) == ids.to_pylist()
+    np.testing.assert_array_equal(piece.rows, [1, 2, 3, 4, 5])
