@@ -24,15 +24,27 @@ OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "innovation", *G
 
 @dataclass(frozen=True)
 class Rows:
-    """Where things lie in the buffer of a lane: numbers of rows, by axes and memory.
+    """Layout of a lane: which row of a buffer holds what.
 
     A lane is what gets its own gains: one axis of one track, or with a coupled scheduler the whole
-    track. Its first `state` rows are what a track remembers, up to `kept` follow the results of the
-    last step, and the rest is scratch.
+    track. Row `r` of lane `i` is ``buffer[r * stride + i]``. The first `state` rows are the state
+    of a track, those up to `kept` the results of its last step; then come plot, sigma and dt of the
+    step, and scratch.
+
+    Attributes
+    ----------
+    n_axes : int
+        Axes of a lane.
+    n_memory : int
+        Numbers that a tracker or its scheduler remembers of a lane.
+    scratch : tuple of str
+        Names of rows for intermediate results of a step, one row each. A step finds there what
+        another one left.
     """
 
     n_axes: int
     n_memory: int
+    scratch: tuple[str, ...] = ()
 
     @property
     def position(self) -> int:
@@ -51,22 +63,22 @@ class Rows:
 
     @property
     def last_plot(self) -> int:
-        """First of `n_axes` rows of the last plot seen (m)."""
+        """First of `n_axes` rows of the last plot (m), missed ones not counted."""
         return 3 * self.n_axes
 
     @property
     def gap(self) -> int:
-        """Time since the last plot seen (s); 0 where nothing will ask for it."""
+        """Time since the last plot (s); 0 where the tracker makes no use of it."""
         return 4 * self.n_axes
 
     @property
     def plots(self) -> int:
-        """Plots seen, counted up to 2."""
+        """Number of plots, counted up to 2, missed ones not counted."""
         return 4 * self.n_axes + 1
 
     @property
     def memory(self) -> int:
-        """First of `n_memory` rows of the scheduler."""
+        """First of `n_memory` rows of the tracker's or scheduler's own."""
         return 4 * self.n_axes + 2
 
     @property
@@ -96,33 +108,38 @@ class Rows:
 
     @property
     def plot(self) -> int:
-        """First of `n_axes` rows of the plot (m), to be filled in before a step."""
+        """First of `n_axes` rows of the plot (m), filled in before a step."""
         return self.kept
 
     @property
     def sigma(self) -> int:
-        """First of `n_axes` rows of its standard deviation (m), likewise; a step leaves it."""
+        """First of `n_axes` rows of its standard deviation (m), filled in before a step.
+
+        A step does not write there: one that is the same at all times is filled in once.
+        """
         return self.kept + self.n_axes
 
     @property
     def dt(self) -> int:
-        """Time step (s), likewise."""
+        """Time step (s), filled in before a step."""
         return self.kept + 2 * self.n_axes
 
     @property
-    def change(self) -> int:
-        """First of `n_axes` rows of the change of observation (m), for use within a step."""
-        return self.kept + 2 * self.n_axes + 1
+    def given(self) -> int:
+        """Number of rows that have their numbers before a step: those kept, and what it is given.
 
-    @property
-    def noise(self) -> int:
-        """First of `n_axes` rows of the standard deviation or variance that a step works with."""
-        return self.kept + 3 * self.n_axes + 1
+        The rows of `scratch` follow.
+        """
+        return self.kept + 2 * self.n_axes + 1
 
     @property
     def total(self) -> int:
         """Number of all rows."""
-        return self.kept + 4 * self.n_axes + 1
+        return self.given + len(self.scratch)
+
+    def scratch_row(self, name: str) -> int:
+        """Row of intermediate results, by its name in `scratch`."""
+        return self.given + self.scratch.index(name)
 
     def output(self, name: str) -> int:
         """First row of an output, by its name in a result."""

@@ -140,7 +140,7 @@ class Runner:
         ndarray
             The lanes after the step.
         """
-        step, kept, scratch = self._plain_step, self.rows.kept, [0.0] * (2 * self.rows.n_axes)
+        step, kept, scratch = self._plain_step, self.rows.kept, [0.0] * len(self.rows.scratch)
         after = []
         for lane, z, sigma, dt in zip(lanes.T.tolist(), plots.tolist(), sigmas, dts, strict=True):
             b = [*lane, *z, *sigma, dt, *scratch]
@@ -164,7 +164,7 @@ class Runner:
         given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
         # Looked up once: this is the inner loop of a small job.
         n_state, n_kept, results = rows.last_plot, rows.kept, slice(rows.predicted, rows.kept)
-        told, scratch = slice(rows.plot, rows.change), [0.0] * (rows.total - rows.kept)
+        told, scratch = slice(rows.plot, rows.given), [0.0] * (rows.total - rows.kept)
         trace = np.empty((n_steps, count, n_state + n_kept - rows.predicted))
         for lane in range(count):
             b = after[:, lane].tolist() + scratch

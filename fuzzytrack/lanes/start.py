@@ -19,7 +19,9 @@ from typing import Any
 
 from fuzzytrack.lanes.layout import Rows
 
-__all__ = ["axis_end", "begin_step", "lane_end", "single_axis_step", "velocity_before"]
+__all__ = [
+    "axis_end", "axis_results", "begin_step", "lane_end", "single_axis_step", "velocity_before",
+]  # fmt: skip
 
 
 def begin_step(plots: float, gap: float, dt: float, seen: bool) -> tuple[float, float, bool, bool]:
@@ -80,6 +82,32 @@ def velocity_before(
     return start if seen & (plots < 2.0) else velocity
 
 
+def axis_results(rows: Rows, stride: int) -> Callable[..., None]:
+    """Function that writes prediction and innovation of an axis; NaN where there is none.
+
+    Parameters
+    ----------
+    rows : Rows
+        Layout of a lane.
+    stride : int
+        Numbers between rows.
+
+    Returns
+    -------
+    callable
+        ``write(buffer, at, prediction, e, seen, running)`` for the axis whose first number is
+        ``buffer[at]``: ``at`` is the lane plus `stride` times the axis.
+    """
+    nan = math.nan
+    prediction_row, innovation_row = rows.predicted * stride, rows.innovation * stride
+
+    def write(b: Any, at: int, prediction: float, e: float, seen: bool, running: bool) -> None:
+        b[prediction_row + at] = prediction if running else nan
+        b[innovation_row + at] = e if seen & running else nan
+
+    return write
+
+
 def axis_end(rows: Rows, stride: int, *, results: bool = True) -> Callable[..., None]:
     """Function that ends the step of an axis: position, last plot, prediction and innovation.
 
@@ -90,21 +118,17 @@ def axis_end(rows: Rows, stride: int, *, results: bool = True) -> Callable[..., 
     stride : int
         Numbers between rows.
     results : bool
-        Whether to write prediction and innovation, too.
+        Whether to write prediction and innovation, too, as `axis_results` does.
 
     Returns
     -------
     callable
-        ``end(buffer, at, z, last, prediction, corrected, e, seen, running)`` for the axis whose
-        first number is ``buffer[at]``: ``at`` is the lane plus `stride` times the axis. The
-        position becomes `corrected` where the plot `z` corrects the prediction, `z` at the start,
-        and `prediction` where the plot is missing. Prediction and innovation `e` are written as NaN
-        where there is none.
+        ``end(buffer, at, z, last, prediction, corrected, e, seen, running)`` with `at` as there,
+        and the innovation `e`. The position becomes `corrected` where the plot `z` corrects the
+        prediction, `z` at the start, and `prediction` where the plot is missing.
     """
-    nan = math.nan
-    position_row, last_row, prediction_row, innovation_row = (
-        row * stride for row in (rows.position, rows.last_plot, rows.predicted, rows.innovation)
-    )
+    position_row, last_row = rows.position * stride, rows.last_plot * stride
+    write_results = axis_results(rows, stride)
 
     def end(
         b: Any, at: int, z: float, last: float, prediction: float, corrected: float, e: float,
@@ -114,8 +138,7 @@ def axis_end(rows: Rows, stride: int, *, results: bool = True) -> Callable[..., 
         b[position_row + at] = position if seen else prediction
         b[last_row + at] = z if seen else last
         if results:
-            b[prediction_row + at] = prediction if running else nan
-            b[innovation_row + at] = e if seen & running else nan
+            write_results(b, at, prediction, e, seen, running)
 
     return end
 

@@ -303,7 +303,7 @@ def _run(tracker: LaneTracker, plots: list[list[float]]) -> Iterator[tuple[bool,
     b = [tally.number(value) for value in fresh]
     for k, plot in enumerate(plots):
         given = [*plot, *[_SIGMA] * n_axes, _PERIOD if k else 0.0]
-        b[rows.plot : rows.change] = [tally.number(value) for value in given]
+        b[rows.plot : rows.given] = [tally.number(value) for value in given]
         before = inside.total, tally.total
         step(b, 1)
         of_scheduler = inside.total - before[0]

@@ -14,6 +14,7 @@ from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.imm_step import (
     MODEL,
     PROBABILITIES,
+    ModelPair,
     imm_rows,
     mixed,
     moved,
@@ -27,6 +28,9 @@ __all__ = ["MANEUVERS", "InteractingModels"]
 
 
 MANEUVERS = ("ca", "cv")
+
+#: Least probability of a model that a new track can have.
+_FLOOR = 1e-12
 
 
 @trackers.register("imm")
@@ -153,7 +157,24 @@ class InteractingModels(LaneTracker):
         rows = imm_rows(n_axes)
         start = self.start_probability
         memory = (1.0 - start, start, *(0.0,) * (rows.n_memory - PROBABILITIES))
-        return LaneProgram(rows, memory, lambda stride: step_function(self, rows, stride))
+        pair = self._models
+        return LaneProgram(rows, memory, lambda stride: step_function(pair, rows, stride))
+
+    @property
+    def _models(self) -> ModelPair:
+        accelerates, sigma = self.maneuver == "ca", self.acceleration_sigma
+        start = self.maneuver_sigma if sigma is None else sigma
+        return ModelPair(
+            quiet_variance=self.quiet_sigma**2,
+            maneuver_variance=self.maneuver_sigma**2,
+            quiet_stay=self.quiet_stay,
+            maneuver_stay=self.maneuver_stay,
+            accelerates=accelerates,
+            floor=_FLOOR if 0.0 < self.start_probability < 1.0 else 0.0,
+            plot_variance=None if self.sigma_w is None else self.sigma_w**2,
+            start_velocity=None if self.velocity_sigma is None else self.velocity_sigma**2,
+            start_acceleration=start**2 if accelerates else 0.0,
+        )
 
     def maneuver_probability(self, state: TrackState) -> Array:
         """Probability that the target maneuvers.

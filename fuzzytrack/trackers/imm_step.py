@@ -1,22 +1,24 @@
-"""The recursion of interacting multiple models, for `fuzzytrack.trackers.imm`.
+"""The step of interacting multiple models, for `fuzzytrack.trackers.imm`.
 
-`step_function` holds all of it, as that of `fuzzytrack.trackers.alpha_beta_step` does for its
-tracker: plain Python over a list and compiled over arrays, with the same result to the last bit.
+The same functions run in plain Python over a list and compiled over arrays, with the same results
+to the last bit.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 from fuzzytrack.gains.joseph import correct_ca, predict_ca
 from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.start import axis_results, begin_step, lane_end
 
-if TYPE_CHECKING:
-    from fuzzytrack.trackers.imm import InteractingModels
-
-__all__ = ["MODEL", "PROBABILITIES", "imm_rows", "mixed", "moved", "step_function", "switched"]
+__all__ = [
+    "MODEL", "PROBABILITIES", "ModelPair", "imm_rows", "mixed", "moved", "step_function",
+    "switched",
+]  # fmt: skip
 
 #: Model of an axis: x, v, a, and P by rows, without what is below its diagonal.
 Model = tuple[float, float, float, float, float, float, float, float, float]
@@ -24,15 +26,53 @@ Model = tuple[float, float, float, float, float, float, float, float, float]
 #: The memory: two probabilities, then for each axis the quiet model and the maneuvering one.
 PROBABILITIES, MODEL = 2, 9
 
-# Least probability, for a model that once had a chance to come back.
-_FLOOR = 1e-12
 # What a plot may say of the models: exp(±300) times 1e±50 leaves room for the probabilities.
 _EXPONENT, _RATIO = 300.0, 1e100
 
 
+# What one pass through the lanes leaves to the next: the share of the other model in the mixture
+# from which each starts; and, as the likelihood of the maneuvering model over that of the quiet
+# one, its square under a root and its exponent.
+_SCRATCH = ("quiet_share", "maneuver_share", "ratio", "exponent")
+
+
+@dataclass(frozen=True)
+class ModelPair:
+    """Numbers of a quiet and a maneuvering model of a target.
+
+    Attributes
+    ----------
+    quiet_variance, maneuver_variance : float
+        Variance of the process noise of a step: of the acceleration (m²/s⁴), or of its change if
+        the maneuvering model `accelerates`.
+    quiet_stay, maneuver_stay : float
+        Probability that the target keeps to its model for a step.
+    accelerates : bool
+        Whether the maneuvering model has an acceleration.
+    floor : float
+        Least probability of a model.
+    plot_variance : float or None
+        Variance of all plots (m²); None where each has its own.
+    start_velocity : float or None
+        Variance of a new track's velocity (m²/s²); None where velocity starts from two plots.
+    start_acceleration : float
+        Variance of a new track's acceleration if it maneuvers (m²/s⁴).
+    """
+
+    quiet_variance: float
+    maneuver_variance: float
+    quiet_stay: float
+    maneuver_stay: float
+    accelerates: bool
+    floor: float
+    plot_variance: float | None
+    start_velocity: float | None
+    start_acceleration: float
+
+
 def imm_rows(n_axes: int) -> Rows:
     """Layout of a lane."""
-    return Rows(n_axes, PROBABILITIES + 2 * MODEL * n_axes)
+    return Rows(n_axes, PROBABILITIES + 2 * MODEL * n_axes, _SCRATCH)
 
 
 def _exp(x: float) -> float:
@@ -190,17 +230,22 @@ def _access(stride: int) -> tuple[Callable[[Any, int], Model], Callable[[Any, in
     return read, write
 
 
-def step_function(
-    tracker: InteractingModels, rows: Rows, stride: int
-) -> Callable[[Any, int], None]:
+def step_function(pair: ModelPair, rows: Rows, stride: int) -> Callable[[Any, int], None]:
     """Function that does one time step of the first lanes of a buffer, in place.
 
-    It goes through all lanes five times, once for each thing to be done to them, and inside of the
-    axes: so the compiler can work on neighbouring lanes at once. What one passage leaves to the
-    next lies in rows whose own numbers come later.
+    It goes through all lanes five times, once for each thing to be done to them, and through the
+    lanes inside of the axes: so the compiler can work on neighbouring lanes at once.
+
+    Parameters
+    ----------
+    pair : ModelPair
+    rows : Rows
+        From `imm_rows`.
+    stride : int
+        Numbers between rows.
     """
-    begin, judge, end = _lane_passages(tracker, rows, stride)
-    predict, correct = _axis_passages(tracker, rows, stride)
+    begin, judge, end = _lane_passes(pair, rows, stride)
+    predict, correct = _axis_passes(pair, rows, stride)
     n_axes = rows.n_axes
 
     def step(b: Any, count: int) -> None:
@@ -215,27 +260,20 @@ def step_function(
     return step
 
 
-def _lane_passages(
-    tracker: InteractingModels, rows: Rows, stride: int
+def _lane_passes(
+    pair: ModelPair, rows: Rows, stride: int
 ) -> tuple[Callable[[Any, int], None], Callable[[Any, int], None], Callable[[Any, int], None]]:
     """What is done once a lane: before the models are predicted, corrected, and at the end."""
     n_axes, nan = rows.n_axes, math.nan
-    quiet_stay, maneuver_stay = tracker.quiet_stay, tracker.maneuver_stay
-    first_count = 1.0 if tracker.velocity_sigma is None else 2.0
-    floor = _FLOOR if 0.0 < tracker.start_probability < 1.0 else 0.0
+    quiet_stay, maneuver_stay, floor = pair.quiet_stay, pair.maneuver_stay, pair.floor
     quiet_row, maneuver_row, gains_row = rows.memory, rows.memory + 1, rows.gains
     plot_row, dt_row, gap_row, plots_row = rows.plot, rows.dt, rows.gap, rows.plots
-    quiet_share_row, maneuver_share_row = rows.gains, rows.gains + 1
-    ratio_row, exponent_row = rows.gains + 2, rows.change
+    quiet_share_row, maneuver_share_row, ratio_row, exponent_row = map(rows.scratch_row, _SCRATCH)
+    end_lane = lane_end(rows, stride, two_point=pair.start_velocity is None)
 
     def begin(b: Any, count: int) -> None:
         """Switch probabilities, and the share of the other model where each starts."""
         for i in range(min(count, stride)):
-            dt = b[dt_row * stride + i]
-            # The first step of a track has no length; its value is not used.
-            dt = dt if dt > 0.0 else 1.0
-            b[dt_row * stride + i] = dt
-            b[gap_row * stride + i] = b[gap_row * stride + i] + dt
             seen = True
             for j in range(n_axes):
                 z = b[(plot_row + j) * stride + i]
@@ -243,8 +281,12 @@ def _lane_passages(
             for j in range(n_axes):
                 z = b[(plot_row + j) * stride + i]
                 b[(plot_row + j) * stride + i] = z if seen else nan
+            dt, gap, running, _ = begin_step(
+                b[plots_row * stride + i], b[gap_row * stride + i], b[dt_row * stride + i], seen
+            )
+            b[dt_row * stride + i] = dt
+            b[gap_row * stride + i] = gap
 
-            running = b[plots_row * stride + i] >= 2.0
             was_quiet = b[quiet_row * stride + i]
             was_maneuver = b[maneuver_row * stride + i]
             quiet, maneuver, to_quiet, to_maneuver = switched(
@@ -277,47 +319,41 @@ def _lane_passages(
                 b[(gains_row + k) * stride + i] = 0.0
 
     def end(b: Any, count: int) -> None:
-        """Count the plot, and scale the gains."""
+        """Gains out of the sums of K over the axes, and the count of the plot."""
         for i in range(min(count, stride)):
             z, dt = b[plot_row * stride + i], b[dt_row * stride + i]
-            plots = b[plots_row * stride + i]
-            seen = z == z
-            update = seen & (plots >= 2.0)
-            counted = plots + 1.0 if plots > 0.0 else first_count
-            counted = counted if counted < 2.0 else 2.0
-            b[plots_row * stride + i] = counted if seen else plots
-            b[gap_row * stride + i] = 0.0 if seen else b[gap_row * stride + i]
             alpha = b[gains_row * stride + i] / n_axes
             beta = b[(gains_row + 1) * stride + i] * dt / n_axes
             gamma = 2.0 * b[(gains_row + 2) * stride + i] * dt * dt / n_axes
-            b[gains_row * stride + i] = alpha if update else nan
-            b[(gains_row + 1) * stride + i] = beta if update else nan
-            b[(gains_row + 2) * stride + i] = gamma if update else nan
+            plots, gap = b[plots_row * stride + i], b[gap_row * stride + i]
+            end_lane(b, i, plots, gap, z == z, alpha, beta, gamma)
 
     return begin, judge, end
 
 
-def _axis_passages(
-    tracker: InteractingModels, rows: Rows, stride: int
+def _axis_passes(
+    pair: ModelPair, rows: Rows, stride: int
 ) -> tuple[Callable[[Any, int, int], None], Callable[[Any, int, int], None]]:
     """What is done for each axis of a lane: prediction of the models, and their correction."""
     nan = math.nan
-    quiet_q, maneuver_q = tracker.quiet_sigma**2, tracker.maneuver_sigma**2
-    accelerates = tracker.maneuver == "ca"
-    fixed = tracker.sigma_w is not None
-    variance = 0.0 if tracker.sigma_w is None else tracker.sigma_w**2
-    start_22 = 0.0 if tracker.velocity_sigma is None else tracker.velocity_sigma**2
-    start_sigma = tracker.acceleration_sigma
-    start_33 = maneuver_q if start_sigma is None else start_sigma**2
-    start_33 = start_33 if accelerates else 0.0
+    quiet_q, maneuver_q, accelerates = (
+        pair.quiet_variance, pair.maneuver_variance, pair.accelerates
+    )  # fmt: skip
+    fixed = pair.plot_variance is not None
+    variance = 0.0 if pair.plot_variance is None else pair.plot_variance
+    start_22 = 0.0 if pair.start_velocity is None else pair.start_velocity
+    start_33 = pair.start_acceleration
     read, write = _access(stride)
+    write_results = axis_results(rows, stride)
     models_row, maneuver_row = rows.memory + PROBABILITIES, rows.memory + 1
     x_row, v_row, a_row = rows.position, rows.velocity, rows.acceleration
     last_row, gap_row, plots_row, gains_row = rows.last_plot, rows.gap, rows.plots, rows.gains
-    prediction_row, innovation_row = rows.predicted, rows.innovation
-    plot_row, sigma_row, dt_row, noise_row = rows.plot, rows.sigma, rows.dt, rows.noise
-    quiet_share_row, maneuver_share_row = rows.gains, rows.gains + 1
-    ratio_row, exponent_row = rows.gains + 2, rows.change
+    plot_row, sigma_row, dt_row = rows.plot, rows.sigma, rows.dt
+    quiet_share_row, maneuver_share_row, ratio_row, exponent_row = map(rows.scratch_row, _SCRATCH)
+
+    def plot_variance(z: float, sigma: float) -> float:
+        r = variance if fixed else sigma * sigma
+        return r if z == z else 1.0
 
     def predict(b: Any, count: int, j: int) -> None:
         """Mix and predict; likelihood of the maneuvering model over that of the quiet one."""
@@ -333,16 +369,12 @@ def _axis_passages(
             write(b, quiet_at + i, one)
             write(b, maneuver_at + i, two)
 
+            z = b[(plot_row + j) * stride + i]
             running = b[plots_row * stride + i] >= 2.0
-            z, sigma = b[(plot_row + j) * stride + i], b[(sigma_row + j) * stride + i]
-            update = (z == z) & running
             prediction = one[0] + b[maneuver_row * stride + i] * (two[0] - one[0])
-            b[(prediction_row + j) * stride + i] = prediction if running else nan
-            b[(innovation_row + j) * stride + i] = z - prediction if update else nan
+            write_results(b, j * stride + i, prediction, z - prediction, z == z, running)
 
-            r = variance if fixed else sigma * sigma
-            r = r if z == z else 1.0
-            b[(noise_row + j) * stride + i] = r
+            r = plot_variance(z, b[(sigma_row + j) * stride + i])
             s_one, s_two = one[3] + r, two[3] + r
             e_one, e_two = z - one[0], z - two[0]
             exponent = 0.5 * (e_one * e_one / s_one - e_two * e_two / s_two)
@@ -356,7 +388,8 @@ def _axis_passages(
         maneuver_at = quiet_at + MODEL * stride
         for i in range(min(count, stride)):
             one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
-            z, r = b[(plot_row + j) * stride + i], b[(noise_row + j) * stride + i]
+            z = b[(plot_row + j) * stride + i]
+            r = plot_variance(z, b[(sigma_row + j) * stride + i])
             plots, gap = b[plots_row * stride + i], b[gap_row * stride + i]
             seen, unknown = z == z, plots == 1.0
             s_one, s_two = one[3] + r, two[3] + r
