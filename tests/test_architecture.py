@@ -28,13 +28,6 @@ LEVEL = {
     room: level for level, rooms in enumerate(layers(ARCHITECTURE.read_text())) for room in rooms
 }
 
-# Circles that are known and being removed.
-KNOWN_CIRCLES = {
-    "fuzzytrack.trackers.imm -> fuzzytrack.trackers.imm_step -> fuzzytrack.trackers.imm": (
-        "the steps of the IMM take the tracker instead of its numbers"
-    ),
-}
-
 
 def room_of(module):
     """First part of a name below the package; the package itself for its ``__init__``."""
@@ -51,9 +44,7 @@ def test_imports_point_down(module):
 
 
 def test_no_circle_of_imports():
-    found = circles(GRAPH)
-    assert [circle for circle in found if circle not in KNOWN_CIRCLES] == []
-    assert set(KNOWN_CIRCLES) <= set(found), "a circle is gone: take it off the list"
+    assert circles(GRAPH) == []
 
 
 def test_only_kernels_imports_numba():
