@@ -13,6 +13,7 @@ from benchmarks.report import NotMeasured, Row, Target
 from benchmarks.scale import Scale
 from benchmarks.timing import ratio, take_turns
 from benchmarks.work import ALPHA, BETA, fixed_tracker, fuzzy_tracker, times_and_plots, warm
+from fuzzytrack.trackers import TrackStore
 
 __all__ = ["scan", "single"]
 
@@ -20,17 +21,30 @@ SECTION = "Streaming (µs a step)"
 UNIT = "µs"
 #: Asked of one step with fuzzy gains (µs), on a machine on which those others took so long.
 LIMIT = 3.0
+#: How much longer a scan may take if each track has its own time.
+OWN_TIMES = 1.3
 THERE = {"FilterPy GHFilter": 2.6, "FilterPy KalmanFilter": 13.5, "Stone Soup Kalman": 210.0}
 
 
-def _stream(tracker: Any, plots: Any) -> Callable[[], Any]:
-    times = [float(k) for k in range(len(plots))]
+def _stream(tracker: Any, plots: Any, delays: Any = 0.0) -> Callable[[], Any]:
+    times = [float(k) + delays for k in range(len(plots))]
 
     def work() -> Any:
         state = tracker.start(plots[0], times[0])
         for k in range(1, len(plots)):
             state = tracker.step(state, plots[k], times[k])
         return state
+
+    return work
+
+
+def _store(tracker: Any, plots: Any, delays: Any) -> Callable[[], Any]:
+    def work() -> Any:
+        store = TrackStore(tracker, plots.shape[-1])
+        slots = store.add(tracker.start(plots[0], delays))
+        for k in range(1, len(plots)):
+            store.step(slots, plots[k], k + delays)
+        return store
 
     return work
 
@@ -91,7 +105,13 @@ def scan(scale: Scale) -> list[Row]:
     tracks, steps = scale.scan_tracks, 200 if scale.compiles else 5
     _, plots = times_and_plots(tracks, steps, axes=2)
     warm(scale, tracker, 2)
-    works = {"ours": _stream(tracker, plots)}
+    # A turning radar sees each track at its own time.
+    delays = np.linspace(0.0, 0.5, tracks)
+    works = {
+        "ours": _stream(tracker, plots),
+        "own times": _stream(tracker, plots, delays),
+        "store": _store(tracker, plots, delays),
+    }
     try:
         track = peers.filterpy_kalman(peers.Model(2, 1.0))
         works["FilterPy"] = lambda: track(plots[:, 0])
@@ -101,7 +121,14 @@ def scan(scale: Scale) -> list[Row]:
     each = 1e6 / steps
     what = f"scan of {tracks:,} tracks x 2 axes, fuzzy gains"
     ours = found["ours"].median * each
-    rows = [Row(SECTION, what, ours, UNIT, target=Target("<=", 60.0))]
+    own = found["own times"].median * each
+    rows = [
+        Row(SECTION, what, ours, UNIT, target=Target("<=", 60.0)),
+        Row(SECTION, f"{what}, times of each track", own, UNIT, "one time for all", ours,
+            ratio(found["ours"], found["own times"]), Target(">=", round(1 / OWN_TIMES, 2))),
+        Row(SECTION, f"{what}, times of each track, in a store", found["store"].median * each, UNIT,
+            "without a store", own, ratio(found["own times"], found["store"])),
+    ]  # fmt: skip
     if track is not None:
         rows.append(
             Row(SECTION, what, ours, UNIT, "FilterPy KalmanFilter",

@@ -166,9 +166,7 @@ class TrackStore:
         ValueError
             As for `drop`.
         """
-        whom = self._checked(slots)
-        lanes = np.ascontiguousarray(self._numbers[whom].T).view(np.float64)
-        return TrackState(self._time[whom], (len(whom), self.n_axes), lanes, self._rows)
+        return self._state(self._checked(slots))
 
     def scatter(self, slots: ArrayLike, state: TrackState) -> None:
         """Replace the state of some tracks.
@@ -215,8 +213,9 @@ class TrackStore:
         DataError, ValueError
             As for `drop`, and as for the tracker's `step`. No track is then changed.
         """
-        state = self.tracker.step(self.gather(slots), z, t, sigma)
-        self.scatter(slots, state)
+        whom = self._checked(slots)
+        state = self.tracker.step(self._state(whom), z, t, sigma)
+        self._put(whom, state)
         return state
 
     def predict(self, slots: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> Prediction:
@@ -241,6 +240,10 @@ class TrackStore:
             As for `step`.
         """
         return self.tracker.predict(self.gather(slots), t, sigma)
+
+    def _state(self, slots: Slots) -> TrackState:
+        lanes = np.ascontiguousarray(self._numbers[slots].T).view(np.float64)
+        return TrackState(self._time[slots], (len(slots), self.n_axes), lanes, self._rows)
 
     def _put(self, slots: Slots, state: TrackState) -> None:
         self._numbers[slots] = state.lanes.view(self._cell).T
