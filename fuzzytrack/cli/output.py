@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from fuzzytrack.io.files import whole_file
 from fuzzytrack.json_types import plain
 from fuzzytrack.tasks import Progress
 
@@ -26,6 +27,7 @@ __all__ = [
     "say",
     "show",
     "with_error",
+    "write_json",
 ]
 
 
@@ -106,6 +108,13 @@ def _empty_table(style: Any) -> Table:
 def print_json(value: Any) -> None:
     """Print a value as JSON, with null for NaN and infinity."""
     say(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def write_json(path: Path, value: Any, indent: int = 2) -> None:
+    """Write a value as JSON, with null for NaN and infinity; the file appears whole."""
+    text = json.dumps(plain(value), indent=indent, ensure_ascii=False, allow_nan=False)
+    with whole_file(path) as draft:
+        draft.write_text(text + "\n", encoding="utf-8")
 
 
 def output_folder(path: str) -> Path:

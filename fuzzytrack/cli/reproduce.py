@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json as json_module
 import math
 from collections import Counter
 from pathlib import Path
@@ -19,10 +18,9 @@ from fuzzytrack.cli.output import (
     say,
     show,
     with_error,
+    write_json,
 )
 from fuzzytrack.cli.pictures import save_picture
-from fuzzytrack.io.files import whole_file
-from fuzzytrack.json_types import plain
 from fuzzytrack.papers.catalog import PAPERS, reproduce_all
 from fuzzytrack.papers.reproduction import Reproduction
 from fuzzytrack.yamltree import suggestion
@@ -68,9 +66,7 @@ def _write(folder: Path, found: list[Reproduction]) -> list[Path]:
     written = []
     for each in found:
         written.append(folder / f"{each.paper}.json")
-        with whole_file(written[-1]) as draft:
-            text = json_module.dumps(plain(each.to_json_dict()), indent=2, ensure_ascii=False)
-            draft.write_text(text + "\n", encoding="utf-8")
+        write_json(written[-1], each.to_json_dict())
     drawings = [(each.paper, *item) for each in found for item in each.pictures.items()]
     with progress("drawing") as watch:
         for number, (paper, name, draw) in enumerate(drawings, 1):

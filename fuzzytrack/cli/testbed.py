@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json as json_text
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,9 +19,10 @@ from fuzzytrack.cli.output import (
     say,
     show,
     with_error,
+    write_json,
 )
 from fuzzytrack.cli.pictures import save_picture
-from fuzzytrack.io.files import check_output, whole_file
+from fuzzytrack.io.files import check_output
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_source, shipped_scenarios
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -134,9 +134,7 @@ def _write(folder: Path, found: Results) -> list[Path]:
     from fuzzytrack.reports.html_report import report_pictures, write_report
 
     written = [folder / name for name in _FILES]
-    text = json_text.dumps(found.to_json_dict(), indent=1, ensure_ascii=False, allow_nan=False)
-    with whole_file(written[0]) as draft:
-        draft.write_text(text + "\n", encoding="utf-8")
+    write_json(written[0], found.to_json_dict(), indent=1)
     with progress("drawing"):
         pictures = report_pictures(found)
         write_report(written[1], found, pictures=pictures)
