@@ -10,7 +10,13 @@ from fuzzytrack.version import __version__
 # For type checkers and editors; at run time a name is imported when it is first used, so that
 # `import fuzzytrack` costs next to nothing, and a program pays for what it uses.
 if TYPE_CHECKING:
-    from fuzzytrack.errors import DataError, NoRuleFiresWarning, PluginWarning, RuleBaseError
+    from fuzzytrack.errors import (
+        CacheWarning,
+        DataError,
+        NoRuleFiresWarning,
+        PluginWarning,
+        RuleBaseError,
+    )
     from fuzzytrack.fuzzy.fuzzification import Fuzzification
     from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, shipped_rulebases
     from fuzzytrack.fuzzy.rulebase import RuleBase
@@ -29,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AlphaBetaTracker",
+    "CacheWarning",
     "DataError",
     "FixedGains",
     "Fuzzification",
@@ -58,7 +65,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "errors": ("DataError", "NoRuleFiresWarning", "PluginWarning", "RuleBaseError"),
+    "errors": ("CacheWarning", "DataError", "NoRuleFiresWarning", "PluginWarning", "RuleBaseError"),
     "fuzzy.fuzzification": ("Fuzzification",),
     "fuzzy.loading": ("load_rulebase", "loads_rulebase", "shipped_rulebases"),
     "fuzzy.rulebase": ("RuleBase",),
