@@ -20,7 +20,7 @@ from benchmarks.work import (
     updates_a_second,
     warm,
 )
-from fuzzytrack.kernels.llvm import call_steady
+from fuzzytrack.kernels.llvm import call, pointer
 from fuzzytrack.lanes import block_loop as passage
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, aligned
 from fuzzytrack.trackers.lane_tracker import runner
@@ -121,4 +121,7 @@ def _steps(tracker: Any, plots: Array) -> Work:
 def _go_round(steady, buffer, plots, predicted, rounds):
     for _ in range(rounds):
         for k in range(ROUND):
-            call_steady(steady, buffer, BLOCK, 1.0, plots, k * BLOCK, predicted, 0)
+            call(
+                steady,
+                (pointer(buffer, 0), BLOCK, 1.0, pointer(plots, k * BLOCK), pointer(predicted, 0)),
+            )

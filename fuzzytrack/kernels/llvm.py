@@ -27,7 +27,7 @@ from numba.extending import intrinsic
 from fuzzytrack.kernels import language
 from fuzzytrack.kernels.cache import KernelFolder
 
-__all__ = ["c_function", "call_steady", "call_step", "keep_on_disk", "word_for_compiler"]
+__all__ = ["c_function", "call", "keep_on_disk", "pointer", "word_for_compiler"]
 
 #: Part of what code is kept by. Raise it when this room compiles the same function differently.
 _SCHEME = 5
@@ -229,55 +229,30 @@ _WORDS: dict[Callable[..., Any], Any] = {
 
 # ---------------------------------------------------------------- calls by address
 
-# So the loop over a whole job is compiled once, and each tracker compiles its own arithmetic only.
+# So code that is compiled once can call what was compiled later.
 
 
-def _place(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
-    """Address of a number of an array."""
-    data = context.make_array(array_type)(context, builder, array).data
-    return builder.gep(data, [index])
-
-
-def _call(builder: Any, address: Any, arguments: list[Any]) -> None:
-    function = ir.FunctionType(ir.VoidType(), [argument.type for argument in arguments])
-    builder.call(builder.inttoptr(address, function.as_pointer()), arguments)
-
-
-def _call_step(typing_context: Any, step: Any, buffer: Any, count: Any) -> Any:
-    """Call the function at the address `step` with pointer to the buffer and count."""
+def _pointer(typing_context: Any, array: Any, index: Any) -> Any:
+    """Pointer to the number at an index of an array, to be given to `call`."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        step, buffer, count = arguments
-        start = ir.Constant(count.type, 0)
-        place = _place(context, builder, signature.args[1], buffer, start)
-        _call(builder, step, [place, count])
-        return context.get_dummy_value()
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.gep(data, [arguments[1]])
 
-    return types.void(types.intp, buffer, types.intp), generate
+    return types.CPointer(array.dtype)(array, types.intp), generate
 
 
-def _call_steady(
-    typing_context: Any, steady: Any, buffer: Any, count: Any, dt: Any,
-    plots: Any, plots_at: Any, predicted: Any, predicted_at: Any,
-) -> Any:  # fmt: skip
-    """Call the function at the address `steady` likewise, with pointers into two more arrays."""
+def _call(typing_context: Any, address: Any, given: Any) -> Any:
+    """Call the function at an address, see `entry_point`, with a tuple of pointers and numbers."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        steady, buffer, count, dt, plots, plots_at, predicted, predicted_at = arguments
-        start = ir.Constant(count.type, 0)
-        kinds = signature.args
-        given = [
-            _place(context, builder, kinds[1], buffer, start), count, dt,
-            _place(context, builder, kinds[4], plots, plots_at),
-            _place(context, builder, kinds[6], predicted, predicted_at),
-        ]  # fmt: skip
-        _call(builder, steady, given)
+        values = cgutils.unpack_tuple(builder, arguments[1])
+        function = ir.FunctionType(ir.VoidType(), [value.type for value in values])
+        builder.call(builder.inttoptr(arguments[0], function.as_pointer()), values)
         return context.get_dummy_value()
 
-    whole = types.intp
-    arguments = (whole, buffer, whole, buffer.dtype, plots, whole, predicted, whole)
-    return types.void(*arguments), generate
+    return types.void(types.intp, given), generate
 
 
-call_step: Any = intrinsic(_call_step)
-call_steady: Any = intrinsic(_call_steady)
+pointer: Any = intrinsic(_pointer)
+call: Any = intrinsic(_call)

@@ -13,7 +13,7 @@ from typing import Any
 
 from fuzzytrack.kernels.compile import compiled
 from fuzzytrack.kernels.language import use_wide_vectors
-from fuzzytrack.kernels.llvm import call_steady, call_step
+from fuzzytrack.kernels.llvm import call, pointer
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, Rows
 
 __all__ = ["compiled_one_step", "compiled_run", "layout"]
@@ -88,12 +88,13 @@ def _run(
             straight = settled & (results | (k < n_steps - 1))
             if straight:
                 target, place = (predicted, at) if len(predicted) else (unwanted, 0)
-                call_steady(steady, b, count, dts[start], plots, at, target, place)
+                block, read, write = pointer(b, 0), pointer(plots, at), pointer(target, place)
+                call(steady, (block, count, dts[start], read, write))
             else:
                 for j in range(n_axes):
                     _copy_in(b, plot_row + j, plots, at + j, n_axes, count)
                 _copy_in(b, dt_row, dts, start, dt_strides[1], count)
-                call_step(step, b, count)
+                call(step, (pointer(b, 0), count))
                 settled = (steady != 0) & (dt_strides[1] == 0)
                 settled = settled and _all_have(b, plots_row, count, 2.0)
             # Gains there is one a lane, of the others one an axis.
@@ -166,7 +167,7 @@ def _one_step(fill: Callable[..., int]) -> Callable[..., int]:
             for j in range(n_axes):
                 _copy_in(b, plot_row + j, plots, begin * n_axes + j, n_axes, count)
             bad += fill(b, dt_row, sigma_row, n_axes, dt, sigma, lanes, begin, count)
-            call_step(step, b, count)
+            call(step, (pointer(b, 0), count))
             for r in range(kept):
                 _copy_out(b, r, after, r * lanes + begin, 1, count)
         return bad + _infinite(plots, 0, lanes * n_axes)

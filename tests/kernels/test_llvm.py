@@ -1,12 +1,12 @@
-"""What LLVM is told of the loops of a compiled function."""
+"""What LLVM is told of the loops of a compiled function, and calls by address."""
 
 import numpy as np
 import pytest
 from llvmlite import ir
 
-from fuzzytrack.kernels.compile import entry_point
+from fuzzytrack.kernels.compile import compiled, entry_point
 from fuzzytrack.kernels.language import promise_independent_turns
-from fuzzytrack.kernels.llvm import _branches_back
+from fuzzytrack.kernels.llvm import _branches_back, call, pointer
 
 
 def function(targets):
@@ -65,3 +65,18 @@ def test_the_promise_reaches_the_compiler(monkeypatch):
         wide[made] = "x double>" in code
     # Each turn takes up what the one before left: only a (false) promise makes vectors of it.
     assert wide == {doubled: False, promised: True}
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_compiled_code_calls_what_was_compiled_later(dtype):
+    def caller(address, source, at, factor, target):
+        call(address, (pointer(source, at), len(source) - at, factor, pointer(target, 1)))
+
+    def scaled(source, count, factor, target):
+        for i in range(count):
+            target[i] = factor * source[i]
+
+    source, target = np.array([1.0, 2.0, 3.0], dtype), np.zeros(4, dtype)
+    outer = compiled(caller)
+    outer(entry_point(scaled, "vpixp", dtype).address, source, 1, dtype(0.5), target)
+    assert target.tolist() == [0.0, 1.0, 1.5, 0.0]
