@@ -189,8 +189,8 @@ class Registry(Generic[T]):
         fits = issubclass(factory, self.base) if isinstance(factory, type) else callable(factory)
         if not fits:
             raise TypeError(
-                f"{self.kind} {name!r} must be a subclass of {self.base.__name__}, or a function "
-                f"that makes one, got {factory!r}"
+                f"{self.kind} {name!r} must be a {self.base.__name__} class, or a function that "
+                f"makes a {self.base.__name__}, got {factory!r}"
             )
 
 
