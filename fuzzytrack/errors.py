@@ -31,7 +31,7 @@ class Location:
 
 
 class Word(str):
-    """A word read from a file, which remembers where it stands; else an ordinary string.
+    """A word read from a file, with its place there; otherwise an ordinary string.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Word(str):
 
 
 class FileError(ValueError):
-    """Something a user wrote that cannot be used; says where it is wrong and what was allowed.
+    """A text that cannot be used; names the place of the mistake and what was allowed.
 
     Parameters
     ----------

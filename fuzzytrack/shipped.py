@@ -25,7 +25,7 @@ class Shipped:
     folder : str
         Folder that holds them: inside an installed package, beside it in a source checkout.
     marker : str
-        A file that tells the folder from another one of its name.
+        A file by which the folder is distinguished from another of the same name.
     failure : type
         The error to raise.
     """

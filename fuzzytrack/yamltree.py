@@ -1,6 +1,6 @@
-"""YAML text as a small tree in which every word knows its place.
+"""YAML text as a small tree in which every word has its place in the text.
 
-Words stay text: nothing is guessed to be a number, a date or a truth value, and nothing is
+Words stay text: none is taken for a number, a date or a truth value, and no objects are
 constructed. Size, depth and the growth of aliases are bounded while the text is being read, with
 a stack of our own, so that no text can exhaust memory, time or Python's recursion limit.
 """
@@ -132,7 +132,7 @@ def quoted(word: str) -> str:
 
 
 def suggestion(word: str, allowed: Collection[str]) -> str:
-    """End a message about an unknown word: a guess at what was meant, and what is allowed."""
+    """End of a message about an unknown word: a similar word, and the allowed ones."""
     words = [w if len(w) <= _SHOWN_CHARACTERS else w[:_SHOWN_CHARACTERS] + "…" for w in allowed]
     # Without regard to case, which is the likeliest slip.
     folded = {w.casefold(): w for w in reversed(words[:100])}
@@ -148,7 +148,7 @@ def is_number(word: str) -> bool:
 
 
 class Document:
-    """A parsed text, and the questions the loader asks of its nodes.
+    """A parsed text, with methods that read its nodes and make errors with their places.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ class Document:
     ------
     FileError
         Of the type `failure`, if the text is no YAML, or more than one document, or uses tags,
-        merge keys, doubled keys or control characters, or exceeds 128 KiB, 12 levels or 10,000
+        merge keys, a key twice or control characters, or exceeds 128 KiB, 12 levels or 10,000
         nodes.
     """
 
@@ -180,10 +180,10 @@ class Document:
         self.failure = failure
         self.root = _Builder(file, failure).build(self._checked(text), loader or _LOADER)
 
-    # ------------------------------------------------------------ complaints
+    # ------------------------------------------------------------ errors
 
     def error(self, node: Node, message: str, offset: int = 0) -> FileError:
-        """Complain of a node, or about the word `offset` characters into a plain one."""
+        """Error about a node, or about the word `offset` characters into a plain one."""
         inside = offset if isinstance(node, Scalar) and node.plain else 0
         return self.failure(message, self.location(node, inside))
 
@@ -194,13 +194,13 @@ class Document:
     def unknown(
         self, node: Node, word: str, role: str, allowed: Collection[str], offset: int = 0
     ) -> FileError:
-        """Complain of an unknown word, with the allowed ones."""
+        """Error about an unknown word, with the allowed ones."""
         message = f"unknown {role} {quoted(word)}{suggestion(word, allowed)}"
         return self.error(node, message, offset)
 
     @contextmanager
     def at(self, node: Node) -> Iterator[None]:
-        """Give complaints of the model, which knows no files, the place of `node`."""
+        """Give errors of the model, which have no place in a file, the place of `node`."""
         try:
             yield
         except FileError as error:
@@ -208,7 +208,7 @@ class Document:
                 raise
             raise self.error(node, error.message) from None
 
-    # ------------------------------------------------------------ questions
+    # ------------------------------------------------------------ reading
 
     def entries(self, node: Node, role: str) -> dict[str, tuple[Scalar, Node]]:
         """Entries of a mapping that has at least one."""
@@ -455,7 +455,7 @@ class _Builder:
         if not isinstance(node, Scalar):
             raise self._error(event, "a key must be a word")
         if node.text in mapping.entries:
-            raise self._error(event, f"doubled key {quoted(node.text)}")
+            raise self._error(event, f"key {quoted(node.text)} is given twice")
         if node.text == "<<" and node.plain:
             raise self._error(event, "unknown word '<<': merge keys are not supported")
         return node

@@ -33,9 +33,9 @@ COMMANDS = {
     "surface": ("surface:surface", "Draw the control surface of a rule base."),
     "certify": (
         "certify:certify",
-        "Prove that no order of gains makes the error grow, or show one.",
+        "Prove that the error shrinks for any order of gains, or show one that makes it grow.",
     ),
-    "gains": ("gains:gains", "Say what fixed gains do: stability, poles, noise and lag."),
+    "gains": ("gains:gains", "Show what fixed gains do: stability, poles, noise and lag."),
     "trackers": (
         "trackers:trackers",
         "List trackers, schedulers and normalizations with their sources, plug-ins included.",
@@ -45,7 +45,7 @@ COMMANDS = {
         "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
     "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
-    "design": ("design:design", "Choose gains by a rule of design, and say what they do."),
+    "design": ("design:design", "Choose gains by a rule of design, and show what they do."),
     "cache": ("cache:cache", "Show where compiled code is kept and how much of it, or remove it."),
 }
 

@@ -29,7 +29,7 @@ def certify(
     ] = "universe",
     json: options.Json = False,
 ) -> None:
-    """Prove that no order of gains makes the error grow, or show one.
+    """Prove that the error shrinks for any order of gains, or show an order that makes it grow.
 
     The gains of the rule base may switch from step to step in any way, not only as the rules would
     have it.
@@ -88,7 +88,7 @@ def certify(
             " error grow."
         )
     say()
-    say("Missed plots, at which nothing is corrected, are not included.")
+    say("Missed plots, at which no correction is made, are not included.")
 
 
 def _reached(rules: RuleBase, reach: str) -> str:

@@ -18,7 +18,7 @@ __all__ = ["design"]
 design = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="Choose gains by a rule of design, and say what they do.",
+    help="Choose gains by a rule of design, and show what they do.",
     rich_markup_mode=None,
 )
 
@@ -47,7 +47,7 @@ def _print_design(
 
 
 def _one_of(**given: float | None) -> None:
-    """Complain unless exactly one option is given."""
+    """Raise ValueError unless exactly one option is given."""
     if sum(value is not None for value in given.values()) != 1:
         names = " or ".join(f"--{name.replace('_', '-')}" for name in given)
         raise ValueError(f"give either {names}")

@@ -1,4 +1,4 @@
-"""The command that says what fixed gains do."""
+"""The command that describes fixed gains."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def gains(
     sigma: Sigma = None,
     json: options.Json = False,
 ) -> None:
-    """Say what fixed gains do: stability, poles, noise and lag."""
+    """Show what fixed gains do: stability, poles, noise and lag."""
     found = theory.gain_card(alpha, beta, gamma, dt, sigma)
     if json:
         print_json(found)

@@ -66,7 +66,7 @@ def check(
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
-    """Check rule bases: what is right, or the place of the first mistake."""
+    """Check rule bases: print facts about each, or the place of the first mistake."""
     options.load_plugins(plugin)
     reviews: list[dict[str, Any]] = []
     wrong = False
@@ -109,7 +109,7 @@ def explain(
     method: Annotated[str, typer.Option(metavar="M", help="exact, relation or table.")] = "exact",
     json: options.Json = False,
 ) -> None:
-    """Say which rules fire at a point, and what comes of it."""
+    """Show which rules fire at a point, and the outputs there."""
     system = FuzzySystem(load_rulebase(name), method)
     point = options.numbers_at(at, system.rules.input_names)
     found = explanation(system, point)

@@ -1,1 +1,1 @@
-"""A generic discrete fuzzy engine; it knows nothing of tracking."""
+"""A generic discrete fuzzy engine, with nothing about tracking in it."""

@@ -23,7 +23,7 @@ class CellReader:
     Parameters
     ----------
     document : Document
-        The tree, which also words the complaints.
+        The tree; it also makes the errors.
     outputs : mapping
         The outputs of the rule base, by name.
     """

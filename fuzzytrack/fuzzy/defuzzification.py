@@ -17,7 +17,7 @@ _ROUNDING = 1e-12
 
 
 def centroid(y: Array, membership: Array) -> Array:
-    """Centre of gravity as a plain sum over the grid (Llinas et al. 1998, Eq. 3.10)."""
+    """Center of gravity as a plain sum over the grid (Llinas et al. 1998, Eq. 3.10)."""
     return np.asarray((membership @ y) / membership.sum(axis=-1))
 
 
@@ -52,7 +52,7 @@ def largest_of_maxima(y: Array, membership: Array) -> Array:
 
 DEFUZZIFIERS: dict[str, Callable[[Array, Array], Array]] = {
     "centroid": centroid,
-    # Over the sets' centres instead of the universe (Eq. 3.13): the grid differs, not the formula.
+    # Over the sets' centers instead of the universe (Eq. 3.13): the grid differs, not the formula.
     "weighted-centers": centroid,
     "bisector": bisector,
     "mom": mean_of_maxima,

@@ -27,7 +27,7 @@ def disjoin(operators: Operators, grades: Array, axis: int | tuple[int, ...]) ->
 def output_grid(operators: Operators, output: Variable) -> tuple[Array, Array]:
     """Points on which an output is inferred, and the sets' grades there.
 
-    Weighted centres (Eq. 3.13) are the centroid over a universe made of the sets' centres, each
+    Weighted centers (Eq. 3.13) are the centroid over a universe made of the sets' centers, each
     belonging to its own set alone; so they need no inference of their own.
 
     Returns

@@ -1,8 +1,8 @@
-"""A rule base whose sets share out every point, as a sum of products of ramps.
+"""A rule base whose grades add up to 1 at every point, as a sum of products of ramps.
 
-Where neighbouring sets cross, one rises as the other falls, so a grade is the difference of two
+Where neighboring sets cross, one rises as the other falls, so a grade is the difference of two
 ramps, each 0 below an interval and 1 above it. With products as AND and sums as OR, an output is
-then a sum over products of ramps, one an input, whose weights are differences of neighbouring
+then a sum over products of ramps, one an input, whose weights are differences of neighboring
 cells of the rule table. Most of those are zero, no rule has to be looked up, and there is nothing
 to divide by.
 """

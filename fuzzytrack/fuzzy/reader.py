@@ -1,4 +1,4 @@
-"""From a located YAML tree to a rule base: every complaint names the place and the word."""
+"""From a YAML tree to a rule base; every error names its place in the file and the word."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Reader:
     Parameters
     ----------
     document : Document
-        The tree, which also words the complaints.
+        The tree; it also makes the errors.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class Reader:
         return Operators(words["and"], words["or"], words["defuzzification"])
 
     def _scheduler(self, node: Node) -> tuple[tuple[str, str], ...]:
-        """Words as they stand, with their places; what they mean is for the scheduler to say."""
+        """Words with their places, unread: they are checked when a scheduler is made."""
         document = self.document
 
         def word(node: Node, role: str) -> Word:
@@ -252,7 +252,7 @@ class Reader:
             )
 
     def _check_output_grids(self, node: Node, operators: Operators) -> None:
-        """Every output set must be above zero somewhere on the grid, or it could never be heard."""
+        """Every output set must be above zero somewhere on the grid, or it would have no effect."""
         if operators.defuzzification == "weighted-centers":
             return
         for name, (_, value) in self.document.entries(node, "outputs").items():
@@ -267,7 +267,7 @@ class Reader:
                     )
 
     def _check_coverage(self, rulebase: RuleBase, node: Node) -> None:
-        """Wherever the inputs are, every output needs a rule that can fire, or a default."""
+        """At all inputs every output needs a rule that can fire, or a default."""
         entries = self.document.entries(node, "inputs")
         for output in rulebase.outputs:
             if output.default is not None:
@@ -385,7 +385,7 @@ class Reader:
         key = frozenset(conditions)
         if key in self.rule_nodes:
             words = " and ".join(f"{name} is {term}" for name, term in conditions)
-            raise self.document.error(node, f"doubled rule: if {words}")
+            raise self.document.error(node, f"two rules with the same conditions: if {words}")
         self.rule_nodes[key] = consequents, shared
         with self.document.at(consequents):
             return Rule(conditions, self.cells.read(consequents, order))

@@ -21,7 +21,7 @@ def relation(rulebase: RuleBase, output: Variable) -> Array:
     Returns
     -------
     ndarray, shape (points of input 1, ..., points of input m, points of the output)
-        μ_R(x, y) of Eq. 3.5. With weighted centres the last axis runs over the output's sets.
+        μ_R(x, y) of Eq. 3.5. With weighted centers the last axis runs over the output's sets.
 
     Raises
     ------

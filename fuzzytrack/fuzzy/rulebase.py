@@ -33,7 +33,7 @@ class Operators:
         The OR of Eq. 3.5, also the composition's. ``sum`` is the plain sum, not a bounded one.
     defuzzification : {"centroid", "bisector", "mom", "som", "lom", "weighted-centers"}
         ``centroid`` is the plain sum over the output grid (Eq. 3.10), ``weighted-centers`` the
-        centroid over the sets' centres alone (Eqs. 3.12 and 3.13).
+        centroid over the sets' centers alone (Eqs. 3.12 and 3.13).
 
     Raises
     ------
@@ -179,7 +179,7 @@ class RuleBase:
             self._check_rule(rule)
             key = frozenset(rule.conditions)
             if key in seen:
-                raise RuleBaseError(f"doubled rule: {rule}; already there: {seen[key]}")
+                raise RuleBaseError(f"two rules with the same conditions: {rule}; and {seen[key]}")
             seen[key] = rule
         object.__setattr__(self, "rules", self._in_order())
         for output in self.outputs:
@@ -193,8 +193,8 @@ class RuleBase:
         return f"<RuleBase {shown(self.name)}: {variables}; {len(self.rules)} rules>"
 
     def __hash__(self) -> int:
-        # Schedulers are looked up by their rules at every step; hashing all parts would take
-        # longer than the step itself.
+        # Compiled code is looked up by scheduler, and so by rule base, at every step; a hash of all
+        # parts would take longer than the step itself.
         return hash((self.name, len(self.rules)))
 
     def _check_variables(self) -> None:
@@ -283,7 +283,7 @@ class RuleBase:
 
 
 def remember_origin(rules: RuleBase, name_or_path: str) -> RuleBase:
-    """The rule base, which from now on says that it was loaded by a name or from a path."""
+    """The same rule base, with the name or path by which it was loaded in its `repr`."""
     object.__setattr__(rules, "_origin", name_or_path)
     return rules
 

@@ -52,8 +52,8 @@ def dumps_rulebase(rules: RuleBase) -> str:
     Raises
     ------
     RuleBaseError
-        If the rule base is one that a file may not hold: a name with blanks, sets out of order, a
-        stretch of an input without a rule. Says which, with the place in the text.
+        If a file may not contain the rule base: a name with blanks, sets out of order, a range of
+        an input without a rule. Names which, with the place in the text.
     """
     text = "\n".join(_lines(rules)) + "\n"
     if loads_rulebase(text, f"<{rules.name}>") != rules:
@@ -84,7 +84,7 @@ def save_rulebase(rules: RuleBase, path: str | os.PathLike[str]) -> None:
     try:
         with open(handle, "w", encoding="utf-8", newline="\n") as stream:
             stream.write(text)
-        # mkstemp makes files that nobody else may read.
+        # mkstemp makes files that only their owner may read.
         os.chmod(draft, _mode(target))
         os.replace(draft, target)
     except BaseException:
@@ -200,14 +200,14 @@ def _list(rules: RuleBase) -> Iterator[str]:
 
 
 def _says(text: str, order: tuple[str, ...], rules: RuleBase) -> tuple[Consequent, ...]:
-    """Read a cell on its own."""
+    """Read a single cell."""
     document = Document(text, "<cell>")
     outputs = {variable.name: variable for variable in rules.outputs}
     return CellReader(document, outputs).read(document.root, order)
 
 
 def _cell(rule: Rule, order: tuple[str, ...], rules: RuleBase) -> str:
-    """Shortest of the three forms of a cell that says what the rule says."""
+    """Shortest of the three forms of a cell with the conclusions of the rule."""
     for text in (_joint(rule.consequents, order), _shares(rule.consequents, order)):
         if text is None:
             continue
@@ -319,11 +319,13 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
     before = reader.rulebase()
     key = _conditions(before, where)
     if key not in reader.rule_nodes:
-        raise RuleBaseError(f"no rule has just the conditions {_spelt(where)}")
+        raise RuleBaseError(f"no rule has exactly the conditions {_spelled(where)}")
     node, shared = reader.rule_nodes[key]
     if shared or node.anchored or _inside_anchor(reader.document, node):
         raise reader.document.error(
-            node, f"other rules share what the rule for {_spelt(where)} says; write it out first"
+            node,
+            f"other rules share the conclusions of the rule for {_spelled(where)}; "
+            "write them out first",
         )
     order = before.layout.cells if before.layout else before.output_names
     if before.layout is None and isinstance(node, MappingNode):
@@ -348,7 +350,7 @@ def _conditions(rules: RuleBase, where: Mapping[str, str]) -> frozenset[tuple[st
     return frozenset(where.items())
 
 
-def _spelt(where: Mapping[str, str]) -> str:
+def _spelled(where: Mapping[str, str]) -> str:
     return ", ".join(f"{name}={term}" for name, term in where.items())
 
 

@@ -89,7 +89,7 @@ class FuzzySystem:
     Notes
     -----
     Inputs outside their universe are taken at its nearest end; a NaN input gives NaN. With
-    non-singleton inputs ``exact`` uses that the composition factorises over the sets, which holds
+    non-singleton inputs ``exact`` uses that the composition factorizes over the sets, which holds
     for every algebra but min with sum; there ``relation`` has to be used.
     """
 
@@ -113,7 +113,7 @@ class FuzzySystem:
             algebra = (rules.operators.conjunction, rules.operators.disjunction)
             if algebra == ("min", "sum") and method != "relation":
                 raise ValueError(
-                    "method: with non-singleton inputs, min and sum do not factorise; "
+                    "method: with non-singleton inputs, min and sum do not factorize; "
                     "use method='relation'"
                 )
         if method == "table":

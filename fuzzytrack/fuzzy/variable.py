@@ -70,7 +70,7 @@ class Universe:
 
     @property
     def step(self) -> float:
-        """Distance between neighbouring grid points."""
+        """Distance between neighboring grid points."""
         intervals = self.points - 1 if self.grid == "ends" else self.points
         return (self.high - self.low) / intervals
 
@@ -201,6 +201,6 @@ class Variable:
         return grades
 
     def centers(self) -> NDArray[np.float64]:
-        """Centres of the sets, shape (n_sets,)."""
+        """Centers of the sets, shape (n_sets,)."""
         low, high = self.universe.low, self.universe.high
         return np.array([s.center(low, high) for s in self.sets])

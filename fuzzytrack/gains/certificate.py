@@ -1,10 +1,9 @@
-"""Certified stability of scheduled gains: what holds however the gains switch.
+"""Certified stability of scheduled gains that switch in any order.
 
 A filter whose gains are stable one by one may still diverge when they change from step to step.
 The error of an α-β filter moves by a matrix that is affine in the gains, so a quadratic function
 that shrinks at the corners of a set of gains shrinks for every gain inside, in any order: a common
-Lyapunov function. Where there is none, a sequence of gains under which the error grows is looked
-for.
+Lyapunov function. If none is found, a sequence of gains is searched under which the error grows.
 """
 
 from __future__ import annotations
@@ -41,8 +40,8 @@ class Certificate:
     Attributes
     ----------
     verdict : {"certified", "refuted", "not decided"}
-        Whether the error contracts whatever the gains do inside the set; or a sequence of gains
-        was found under which it grows; or neither.
+        ``certified``: the error contracts for any gains in the set, in any order. ``refuted``: a
+        sequence of gains was found under which it grows. ``not decided``: neither was shown.
     rate : float
         Contraction of the Lyapunov function's root per step, the best one found; below 1 if and
         only if certified.
@@ -195,7 +194,7 @@ def certify(
 
     Notes
     -----
-    The rate minimises the largest eigenvalue of P⁻¹FᵀPF over the vertices, a quasi-convex problem
+    The rate minimizes the largest eigenvalue of P⁻¹FᵀPF over the vertices, a quasi-convex problem
     in two unknowns. The counter-example is a product of vertex matrices with spectral radius above
     1, found by a beam search and hence an explicit proof, but a search that finds none proves
     nothing. Missed plots (α = β = 0) lie outside of every certificate.

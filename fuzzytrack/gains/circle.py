@@ -63,7 +63,7 @@ def optimal_on_circle(
     kappa: float = 1.0,
     gamma: bool = False,
 ) -> CircleOptimum:
-    """Gains that minimise d² + κ σ² ρ² for a target that flies a circle.
+    """Gains that minimize d² + κ σ² ρ² for a target that flies a circle.
 
     Parameters
     ----------

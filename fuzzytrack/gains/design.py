@@ -30,7 +30,7 @@ Triple = tuple[Array, Array, Array]
 
 
 def tracking_index(sigma_v: ArrayLike, sigma_w: ArrayLike, dt: ArrayLike) -> Array:
-    """Kalata's tracking index λ = σ_v T²/σ_w: how far a manoeuvre carries, against the noise.
+    """Kalata's tracking index λ = σ_v T²/σ_w: how far a maneuver carries, against the noise.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def fading_memory(xi: ArrayLike, order: int = 2) -> Pair | Triple:
     Parameters
     ----------
     xi : array_like
-        The pole, 0 <= ξ < 1: 0 follows the last plots exactly, towards 1 it smooths more.
+        The pole, 0 <= ξ < 1: 0 follows the last plots exactly, toward 1 it smooths more.
     order : {2, 3}
         Number of poles.
 

@@ -1,4 +1,4 @@
-"""Gains that minimise a cost: closed forms for the classical costs, a search for any other.
+"""Gains that minimize a cost: closed forms for the classical costs, a search for any other.
 
 The costs weigh the noise that a filter passes on against its errors when the target moves
 (Llinas et al. 1998, Eqs. 2.92 to 2.106). For a straight line each has one dimensionless index, as
@@ -127,7 +127,7 @@ def _index(motion: Array, power: float, dt: ArrayLike, sigma: ArrayLike, kappa: 
 def optimal_for_velocity(index: ArrayLike) -> tuple[Array, Array]:
     """Gains of an alpha-beta filter for a target that starts to move with constant velocity.
 
-    They minimise J + κ σ² ρ², where J is the transient cost and ρ² the noise ratio of the
+    They minimize J + κ σ² ρ², where J is the transient cost and ρ² the noise ratio of the
     prediction.
 
     Parameters
@@ -165,7 +165,7 @@ def optimal_for_velocity(index: ArrayLike) -> tuple[Array, Array]:
 def optimal_for_acceleration(index: ArrayLike) -> tuple[Array, Array]:
     """Gains of an alpha-beta filter for a target that starts to accelerate from rest.
 
-    They minimise J + κ σ² ρ², where J is the transient cost about the steady lag and ρ² the noise
+    They minimize J + κ σ² ρ², where J is the transient cost about the steady lag and ρ² the noise
     ratio of the prediction.
 
     Parameters
@@ -212,7 +212,7 @@ def optimal_for_acceleration(index: ArrayLike) -> tuple[Array, Array]:
 def optimal_for_steady_error(index: ArrayLike) -> tuple[Array, Array]:
     """Gains of an alpha-beta filter for a target that accelerates steadily.
 
-    They minimise κₛ e² + κ σ² ρ², where e = a T²/β is the steady lag and ρ² the noise ratio of
+    They minimize κₛ e² + κ σ² ρ², where e = a T²/β is the steady lag and ρ² the noise ratio of
     the prediction.
 
     Parameters
@@ -255,7 +255,7 @@ def optimal_alpha_beta_gamma(
 ) -> tuple[Array, Array, Array]:
     """Gains of an alpha-beta-gamma filter for a target that starts to move and to accelerate.
 
-    They minimise J + κ σ² ρ², where J is the transient cost and ρ² the noise ratio of the
+    They minimize J + κ σ² ρ², where J is the transient cost and ρ² the noise ratio of the
     prediction.
 
     Parameters

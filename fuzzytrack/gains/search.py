@@ -1,4 +1,4 @@
-"""Gains that minimise any cost, searched among stable gains within bounds only."""
+"""Gains that minimize any cost, searched among stable gains within bounds only."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def optimal_gains(
     gamma: bool = False,
     start: Sequence[float] | None = None,
 ) -> Optimum:
-    """Stable gains that minimise any cost.
+    """Stable gains that minimize any cost.
 
     A search on a grid over all stable gains within the bounds, then downhill from the best few
     of its minima. Every candidate is stable and within the bounds, so the cost is asked nothing
@@ -79,7 +79,7 @@ def optimal_gains(
     if not attained:
         raise ValueError(
             "cost must have a minimum among stable gains; this one falls to the edge of stability, "
-            f"towards alpha={optimum.alpha:.3g}, beta={optimum.beta:.3g}, "
+            f"toward alpha={optimum.alpha:.3g}, beta={optimum.beta:.3g}, "
             f"gamma={optimum.gamma:.3g}: bound the gains"
         )
     return optimum

@@ -357,7 +357,7 @@ def _smallest_real_root(s2: Array, s1: Array, s0: Array) -> Array:
     """Smallest real root of p(x) = x³ - s₂x² + s₁x - s₀, accurate to the residual's rounding.
 
     Left of its inflection p is concave and right of it convex, so Newton's method from beyond the
-    outermost root runs towards it without ever passing it: it has converged when it turns back.
+    outermost root runs toward it without ever passing it: it has converged when it turns back.
     """
     middle = s2 / 3
     slope = s1 - s2 * middle  # p is y³ + slope·y + p(middle) in y = x - middle

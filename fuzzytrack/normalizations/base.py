@@ -58,7 +58,7 @@ class Normalization(ABC):
         """Scalar function from the gains that were chosen to the memory; None unless overridden.
 
         It is called after inference, with the memory that the kernel returned and the gains for the
-        same plot; at steps whose gains are dropped too, if the normalisation sees every step.
+        same plot; at steps whose gains are dropped too, if the normalization sees every step.
         """
         return None
 

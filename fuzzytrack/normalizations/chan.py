@@ -12,7 +12,7 @@ from fuzzytrack.normalizations.base import Normalization, Normalize, normalizati
 
 __all__ = ["Chan", "ChanMagnitude", "ChanSigned"]
 
-#: What is smaller counts as nothing; single precision has it, too.
+#: Least denominator; single precision can represent it, too.
 _LEAST = 1e-30
 
 
@@ -20,14 +20,14 @@ def relative(part: float, whole: float) -> float:
     """``part`` over the larger magnitude of the two, in [-1, 1]; 0 if both are 0."""
     size, other = abs(part), abs(whole)
     largest = size if size > other else other
-    # Never 0: a maximum takes less time than a choice.
+    # The denominator is never 0; a maximum takes less time than a branch.
     return part / (largest if largest > _LEAST else _LEAST)
 
 
 @normalizations.register("chan")
 @dataclass(frozen=True, repr=False)
 class Chan(Normalization):
-    """Chan's normalisation with absolute denominators, axis by axis.
+    """Chan's normalization with absolute denominators, axis by axis.
 
     E is e over the larger of abs(e) and abs(Δx), and ΔE is E - E′ over the larger of abs(E - E′)
     and abs(E′), where Δx is the change of observation and E′ the previous E (0 at first); 0 where
@@ -35,16 +35,16 @@ class Chan(Normalization):
 
     Notes
     -----
-    Llinas et al. (1998), Eqs. 3.16 to 3.19, with absolute denominators: read with their signs, E
-    would turn round with the direction of travel, against the report's own Fig. 3.6 (see
+    Llinas et al. (1998), Eqs. 3.16 to 3.19, with absolute denominators: with signed ones the sign
+    of E would depend on the direction of travel, contrary to the report's own Fig. 3.6 (see
     `ChanSigned`).
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), Eqs. 3.16-3.19, absolute denominators"
-    signals: ClassVar[tuple[str, ...]] = ("normalised error", "normalised error rate")
+    signals: ClassVar[tuple[str, ...]] = ("normalized error", "normalized error rate")
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """Previous normalised error, 0."""
+        """Previous normalized error, 0."""
         return (0.0,)
 
     def kernel(self, n_axes: int) -> Normalize:
@@ -70,10 +70,10 @@ def relative_signed(part: float, whole: float) -> float:
 @normalizations.register("chan-signed")
 @dataclass(frozen=True, repr=False)
 class ChanSigned(Normalization):
-    """Chan's normalisation as the report prints it, with signed denominators.
+    """Chan's normalization as the report prints it, with signed denominators.
 
     E is e/Δx where abs(e) < abs(Δx), else the sign of e; likewise ΔE over E′. For comparison only:
-    E has the wrong sign whenever the target moves in the negative direction, and jumps by 2 at
+    E has the wrong sign when the target moves in the negative direction, and jumps by 2 at
     abs(e) = abs(Δx) there. Where Eq. 3.19 leaves equality open, the sign is taken.
 
     Notes
@@ -82,10 +82,10 @@ class ChanSigned(Normalization):
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), Eqs. 3.16-3.19, literally"
-    signals: ClassVar[tuple[str, ...]] = ("normalised error", "normalised error rate")
+    signals: ClassVar[tuple[str, ...]] = ("normalized error", "normalized error rate")
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """Previous normalised error, 0."""
+        """Previous normalized error, 0."""
         return (0.0,)
 
     def kernel(self, n_axes: int) -> Normalize:
@@ -131,7 +131,7 @@ def _sum_of_squares(n_axes: int) -> Squares:
 @normalizations.register("chan-magnitude")
 @dataclass(frozen=True, repr=False)
 class ChanMagnitude(Normalization):
-    """Root mean square of Chan's normalised errors over the axes of a track.
+    """Root mean square of Chan's normalized errors over the axes of a track.
 
     Ẽ² = ΣEᵢ²/n and ΔẼ² = ΣΔEᵢ²/n, both in [0, 1]; Eᵢ and ΔEᵢ as in `Chan`. Coupled: one set of
     gains for all axes.
@@ -146,7 +146,7 @@ class ChanMagnitude(Normalization):
     coupled: ClassVar[bool] = True
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """Previous normalised error of each axis, 0."""
+        """Previous normalized error of each axis, 0."""
         return (0.0,) * n_axes
 
     def kernel(self, n_axes: int) -> Normalize:

@@ -21,11 +21,10 @@ class Predicted(Normalization):
     """Innovation over the standard deviation that noise alone gives it, and its change.
 
     E = e/√S and ΔE = E - E′ (E′ = 0 at first). S = P₁₁ + σ² is the variance of the innovation of a
-    target that does not manoeuvre, with P the covariance that the noise of the plots has left in
-    the prediction by way of the gains that were in use. So E has variance 1 on a straight run
-    whatever the gains: after large ones, and after missed plots, the same innovation counts for
-    less than with `Scale`. Unbounded: a rule base takes values outside its universe at the nearest
-    end.
+    target that does not maneuver, with P the covariance that the noise of the plots has left in the
+    prediction through the gains that were in use. So E has variance 1 on a straight run with any
+    gains: after large gains, and after missed plots, E is smaller than with `Scale`. Unbounded: a
+    rule base takes values outside its universe at the nearest end.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""What all pictures share: figures and axes, colours, legends, ticks."""
+"""What all pictures share: figures and axes, colors, legends, ticks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fuzzytrack.fuzzy.system import FuzzySystem
 
 AxesArray = NDArray[np.object_]
 
-# Okabe and Ito (2008): told apart by people with any colour vision; yellow is left out.
+# Okabe and Ito (2008): told apart by people with any color vision; yellow is left out.
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
     "#0072B2",
     "#D55E00",
@@ -30,7 +30,7 @@ BLACK = "black"
 COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 INK, GREY = "0.15", "0.55"
-# Perceptually uniform, readable in grey and with any colour vision.
+# Perceptually uniform, readable in grey and with any color vision.
 COLORMAP = "viridis"
 PLAIN = FuncFormatter(lambda value, _: f"{value:.4g}")
 

@@ -188,7 +188,7 @@ def _values(
     if points < 2:
         raise ValueError(f"points: must be at least 2, got {points}")
     if inputs or at:
-        raise ValueError(f"inputs, at: {rules.name} has one input; there is nothing to choose")
+        raise ValueError(f"inputs, at: only for several inputs; {rules.name} has one")
     variable = rules.inputs[0]
     x = np.linspace(variable.universe.low, variable.universe.high, points)
     return (variable,), (x,), np.asarray(system(**{variable.name: x})[output])
@@ -322,7 +322,7 @@ def plot_relation(
     Notes
     -----
     Llinas et al. (1998), Eqs. 3.3 to 3.5 and Figs. 3.4 and 3.5. The slice is the column of the
-    nearest grid point. With weighted centres the matrix has one row for each set of the output.
+    nearest grid point. With weighted centers the matrix has one row for each set of the output.
     """
     base = shared.rules_of(rules)
     if len(base.inputs) != 1:

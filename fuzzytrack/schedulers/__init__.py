@@ -1,4 +1,4 @@
-"""Gain schedulers: who choose the gains of a tracker."""
+"""Gain schedulers: they choose the gains of a tracker."""
 
 from fuzzytrack.schedulers.base import GainScheduler, schedulers
 from fuzzytrack.schedulers.benedict_bordner import BenedictBordner

@@ -1,4 +1,4 @@
-"""Gains of fading memory, from the one number ξ."""
+"""Gains of a filter with fading memory, by its one parameter ξ."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ class FadingMemory(GainScheduler):
     Parameters
     ----------
     xi : float
-        Damping parameter, 0 <= ξ < 1: 0 follows the last plots, towards 1 it smooths more.
+        Damping parameter, 0 <= ξ < 1: with 0 the filter follows the last plots, with
+        values near 1 it smooths more.
     convention : {"mahafza", "njonjo"}
         What γ = (1 - ξ)³ means. ``mahafza``: acceleration gain γ/T², the least-squares filter with
         all poles at ξ. ``njonjo``: acceleration gain 2γ/T², as Njonjo et al. print it; it is

@@ -1,4 +1,4 @@
-"""Gains from a rule base: the one place where the fuzzy engine meets the theory of gains."""
+"""Gains from a rule base: the fuzzy engine and the theory of gains together."""
 
 from __future__ import annotations
 
@@ -57,8 +57,8 @@ class FuzzyScheduler(GainScheduler):
 
     Notes
     -----
-    Llinas et al. (1998), chapter 3; with a coupled normalisation, Chan's scheme. The memory is that
-    of the normalisation; with an opening, the number of plots stands before it.
+    Llinas et al. (1998), chapter 3; with a coupled normalization, Chan's scheme. The memory is that
+    of the normalization; with an opening, the number of plots stands before it.
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), chapter 3"
@@ -100,17 +100,17 @@ class FuzzyScheduler(GainScheduler):
 
     @property
     def coupled(self) -> bool:  # type: ignore[override]
-        """Whether one set of gains serves all axes, as the normalisation says."""
+        """Whether one set of gains serves all axes, as the normalization says."""
         return self.normalization.coupled
 
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
-        """Whether plots need a standard deviation, as the normalisation says."""
+        """Whether plots need a standard deviation, as the normalization says."""
         return self.normalization.needs_sigma
 
     @property
     def sees_every_step(self) -> bool:  # type: ignore[override]
-        """Whether all steps of a track are followed: for the normalisation, or to count plots."""
+        """Whether all steps of a track are followed: for the normalization, or to count plots."""
         return self.opens or self.normalization.sees_every_step
 
     @property
@@ -134,7 +134,7 @@ class FuzzyScheduler(GainScheduler):
         return infer_function(self.system)
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """Memory of the normalisation; with an opening, after the number of plots."""
+        """Memory of the normalization; with an opening, after the number of plots."""
         own = self.normalization.initial_memory(n_axes)
         return (0.0, *own) if self.opens else own
 
@@ -144,7 +144,7 @@ class FuzzyScheduler(GainScheduler):
         return self.normalization.prediction_variance(own, dt)
 
     def kernel(self, n_axes: int) -> Kernel:
-        """Normalise, infer, convert to gains; see `GainScheduler.kernel`."""
+        """Normalize, infer, convert to gains; see `GainScheduler.kernel`."""
         normalize = self.normalization.kernel(n_axes)
         infer = self.inference
         to_gains = self.outputs.conversion(self.rules.output_names)
@@ -173,7 +173,7 @@ class FuzzyScheduler(GainScheduler):
             signals, own = normalize(innovation, change, dt, sigma, before)
             alpha, beta, gamma, retention = to_gains(infer(signals))
             first_alpha, first_beta = least_squares_gains(count if count > 2.0 else 2.0)
-            # Both from one source: α of one and β of the other need not be stable.
+            # α and β from the same source: those of different ones need not be stable together.
             opening = first_alpha > alpha
             alpha = first_alpha if opening else alpha
             beta = first_beta if opening else beta
@@ -229,8 +229,8 @@ def _check_range(rules: RuleBase) -> None:
 
 
 def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:
-    """A tracker cannot use NaN gains: find inputs at which no rule fires."""
-    # Sets that share out every point, and a rule for each of their combinations: nothing to search.
+    """Raise RuleBaseError if there are inputs at which no rule fires, where gains would be NaN."""
+    # Grades add up to 1 everywhere and every combination of sets has a rule: one always fires.
     if system.method == "exact" and find_ramps(rules) is not None:
         return
     axes = []

@@ -19,7 +19,7 @@ def least_squares_gains(n: float) -> tuple[float, float]:
 
 
 def checked_limit(limit: float | None) -> float | None:
-    """Number of plots after which a memory no longer grows, as a float; None if it always does."""
+    """Number of plots from which on a memory does not grow, as a float; None without a limit."""
     if limit is None:
         return None
     value = float(finite("limit", limit))
@@ -39,8 +39,9 @@ class GrowingMemory(GainScheduler):
     Parameters
     ----------
     limit : float, optional
-        Plots after which the memory no longer grows and the gains stay, >= 2. Unless given, it
-        grows for ever: as published, and only for targets that never manoeuvre.
+        Number of plots, >= 2, from which on the memory does not grow and the gains stay as they
+        are. Without it the memory has no limit, as published; this suits only targets that never
+        maneuver.
 
     Raises
     ------

@@ -14,7 +14,7 @@ __all__ = ["InnovationScheduler"]
 FLOORS = ("max", "negative")
 LONGEST_WINDOW = 64
 
-# A noise of 1e-15 m, steps of 3e-8 s: what is less would be divided by 0.
+# Squares of a noise of 1e-15 m and of a step of 3e-8 s; with less, a divisor could become 0.
 _LEAST_VARIANCE, _LEAST_SQUARE = 1e-30, 1e-15
 _LARGEST_INDEX = 10.0
 
@@ -32,9 +32,9 @@ def kalata_gains(index: float) -> tuple[float, float]:
 class InnovationScheduler(GainScheduler):
     """Gains from the mean square of the last innovations, after Kim & Lee.
 
-    What of that mean square S the noise of the plots does not explain is put down to manoeuvres:
-    it gives a variance of the target's acceleration, this the tracking index λ = σ_v T²/σ_w, and λ
-    the gains of the steady Kalman filter.
+    The part of that mean square S that the noise of the plots does not explain is attributed to
+    maneuvers. It gives a variance of the target's acceleration, this gives the tracking index
+    λ = σ_v T²/σ_w, and λ gives the gains of the steady Kalman filter.
 
     By default (``q_scale=None``) the state's covariance is the one that belongs to the new gains;
     then S = σ_w²/(1 - α), and simply α = 1 - σ_w²/S. `as_published` is the paper's form.
@@ -42,22 +42,24 @@ class InnovationScheduler(GainScheduler):
     Parameters
     ----------
     sigma_d : float
-        Standard deviation of acceleration presumed at least or, see `floor`, otherwise (m/s²),
-        > 0; with `q_scale` also the one behind the paper's steady covariance P₀.
+        Standard deviation σ_D of the acceleration (m/s²), > 0: the least one that is assumed, or
+        the one where the innovations give none, see `floor`. With `q_scale` also the one of the
+        paper's steady covariance P₀.
     window : int
         Number N of innovations, from 1 to 64.
     q_scale : float, optional
-        Standard deviation σ_Q (m/s²), > 0, behind the paper's process covariance Q = GGᵀσ_Q²:
+        Standard deviation σ_Q (m/s²), > 0, of the paper's process covariance Q = GGᵀσ_Q²:
         σ_v² is then the factor φ = (4/(T⁴σ_Q²))·(S - σ_w²/(1 - α₀)) + (σ_D/σ_Q)², with α₀ the
-        gain at σ_D. **q_scale=1 is the text with consistent units, and latches up**: large gains
-        make innovations large, which keep the gains large, long after a manoeuvre.
+        gain at σ_D. **With q_scale=1, the text with consistent units, gains stay large long after
+        a maneuver**: large gains make large innovations, and these large gains.
     extra_term : bool
         Whether N + 1 squares are added up and divided by N, as Eq. 16 is printed.
     partial : bool
-        Whether to go by the innovations so far until the window is full, instead of by σ_D.
+        Whether the innovations so far count while the window is not full; otherwise the gains are
+        those of σ_D until then.
     floor : {"max", "negative"}
-        ``max``: σ_v is never less than σ_D. ``negative``: σ_D stands in only where the noise
-        explains more than all of S, as Eq. 17 is printed; the gains may then come near 0.
+        ``max``: σ_v is at least σ_D. ``negative``: σ_v is σ_D only where the noise alone explains
+        more than S, as Eq. 17 is printed; the gains may then come near 0.
 
     Raises
     ------
@@ -66,19 +68,20 @@ class InnovationScheduler(GainScheduler):
 
     Notes
     -----
-    Kim & Lee, Eqs. 5 to 17. The default has no manoeuvre's size in it but a floor, does not depend
-    on units and does not latch up. Where the target's acceleration is known, fixed gains for it are
-    as good.
+    Kim & Lee, Eqs. 5 to 17. The default assumes no size of a maneuver but the floor, does not
+    depend on units, and its gains become small again after a maneuver. Where the target's
+    acceleration is known, fixed gains for it are as good.
 
-    T is the time since the last plot that was seen, and β is for a step of that length: the paper
-    misses no plot. With the last time step alone, the larger innovations after a gap pass for a
-    manoeuvre, the gains turn too hard for the gap, and some tracks swing up without end. Nor is λ
-    ever more than 10 (α 0.979, β 1.459), of which the paper says nothing: beyond it a pole nears
-    -1, and after one plot far off the track would ring on, for as long as S is large.
+    T is the time since the last plot that was seen, and β is for a step of that length; the paper
+    has no missed plots. With the last time step instead, the larger innovations after a gap would
+    be taken for a maneuver, the gains would be too large for the gap, and some tracks would
+    oscillate without bound. λ is at most 10 (α 0.979, β 1.459), which is not in the paper: with a
+    larger λ a pole comes near -1, and after one plot far off, the track would oscillate for as long
+    as S is large.
 
     The memory is the number of squares kept, the number of plots up to 2, the time since the last
-    one (s), and the squares, the newest first. The first two plots start a track; neither has an
-    innovation to learn from.
+    one (s), and the squares, the newest first. The first two plots start a track and have no
+    innovation.
 
     Examples
     --------
@@ -120,8 +123,8 @@ class InnovationScheduler(GainScheduler):
         Parameters
         ----------
         sigma_d, q_scale : float
-            As above. The paper states neither; 5 m/s² meets what it claims. ``q_scale=1`` shows the
-            latch-up.
+            As above. The paper states neither; with 5 m/s² its claims hold. With ``q_scale=1``
+            gains stay large after a maneuver.
         window : int
             N; 12 in the paper.
         """
@@ -167,7 +170,7 @@ class InnovationScheduler(GainScheduler):
             total = 0.0
             for square in squares:
                 total = total + square
-            # Until the window is full, the divisor falls short in the same proportion.
+            # While the window is not full, the divisor is smaller in the same proportion.
             s = total / (divisor * ((count if count > 0.0 else 1.0) / full))
             r = sigma * sigma if seen else 1.0
             r = r if r > _LEAST_VARIANCE else _LEAST_VARIANCE

@@ -43,11 +43,11 @@ class KalmanCV(GainScheduler):
     sigma_v : float
         Standard deviation of the acceleration (m/s²), >= 0.
     sigma_w : float, optional
-        Standard deviation of all plots (m), > 0. Unless given, each plot brings its own.
+        Standard deviation of all plots (m), > 0. Without it, that of each plot is used.
     velocity_sigma : float, optional
         Standard deviation of a new track's velocity (m/s), > 0, about 0: for the tracker's start
-        ``one-point``. Unless given, nothing is presumed of the velocity: it comes from the first
-        two plots, as also with the start ``two-point``, and both starts give the same track.
+        ``one-point``. Without it nothing is assumed about the velocity: it comes from the first two
+        plots, as with the start ``two-point``, and both starts give the same track.
 
     Raises
     ------
@@ -61,7 +61,7 @@ class KalmanCV(GainScheduler):
     λ = σ_v T²/σ_w. Joseph form.
     The memory is (phase, P₁₁, P₁₂, P₂₂, time since the first plot (s)), with P the covariance of
     the filtered position and velocity, and a phase of 0 before the first plot, 1 while velocity is
-    unknown (P is then what is known apart from it) and 2 from then on.
+    unknown (P is then the part that is known) and 2 from then on.
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), Kalman filter decoupled by axes"

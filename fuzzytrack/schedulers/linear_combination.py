@@ -23,7 +23,7 @@ class LinearCombination(GainScheduler):
     Parameters
     ----------
     alpha : float
-        Position gain behind β̃, 0 < α < 4 - 2√2.
+        Position gain from which β̃ follows, 0 < α < 4 - 2√2.
     weight : float
         w, from 0 to 1.
     limit : float, optional
@@ -36,9 +36,9 @@ class LinearCombination(GainScheduler):
 
     Notes
     -----
-    Al-Wagih & Abdulla, Eq. 25 and Algorithm 1. They leave w to an optimisation and state no value;
-    α = 0.05 and w = 0.05 are the reading that is nearest to their tables. Without a limit α falls
-    to 0 while β does not: on long tracks the filter is stable, but hardly damped.
+    Al-Wagih & Abdulla, Eq. 25 and Algorithm 1. They choose w by an optimization and do not print
+    it; α = 0.05 and w = 0.05 come nearest to their tables. Without a limit α falls to 0 while β
+    does not: on long tracks the filter is stable, but its damping is very small.
     """
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M3, Eq. 25"

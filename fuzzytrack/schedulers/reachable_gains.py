@@ -59,7 +59,7 @@ def certify(
 
 
 def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
-    """Gains whose convex hull holds whatever a rule base can schedule.
+    """Gains whose convex hull contains all gains that a rule base can schedule.
 
     Parameters
     ----------
@@ -67,9 +67,9 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
         With outputs stiffness and damping, stiffness alone (damping on Kalata's curve), or alpha
         and beta.
     reach : {"universe", "rules"}
-        ``universe`` takes the box of the outputs' universes, whatever the rules say. ``rules``
-        takes the hull of what the single rules conclude, which is smaller; it is valid where every
-        value is a mean of them: weighted centres with product and sum.
+        ``universe``: all gains within the universes of the outputs, for any rules. ``rules``: the
+        hull of the conclusions of the single rules, which is smaller; it is valid where every
+        value is a mean of these: weighted centers with product and sum.
 
     Returns
     -------
@@ -85,8 +85,8 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
 
     Notes
     -----
-    The gains of an opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are left out: it is over
-    after a few plots, and so decides nothing about whether the error shrinks in the end.
+    The gains of an opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are not included: it ends
+    after a few plots, so whether the error shrinks in the long run does not depend on it.
     """
     return _gains(rules, reach)[0]
 
@@ -121,7 +121,7 @@ def _step(alpha: float, beta: float, w_domain: bool) -> dict[str, float]:
 
 
 def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
-    """Gains round what a rule base can reach, and gains that it does reach."""
+    """Gains that enclose those a rule base can reach, and gains that it does reach."""
     if reach not in REACHES:
         raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
     outputs = find_gain_outputs(rules.output_names)
@@ -186,8 +186,8 @@ def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
             row.append(sum(share * center for share, center in shares) / total if total else 0.0)
         if abs(totals[0] - totals[-1]) > 1e-12:
             raise RuleBaseError(
-                f"reach 'rules' needs rules that are as sure of {names[0]} as of {names[-1]}; "
-                f"not so: {rule}"
+                f"reach 'rules' needs rules with the same confidence for {names[0]} and "
+                f"{names[-1]}, got: {rule}"
             )
         if totals[0] > 0:
             rows.append(row)

@@ -1,4 +1,4 @@
-"""What there is to say about a rule base that is right."""
+"""Facts about a rule base: its outputs, gains and symmetry over a grid of the inputs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["Review", "explanation", "grid_table", "review"]
 _POINTS = 10_201
 _MAX_CELLS = 1_000_000
 _TABLE_INPUTS = 2
-# What counts as equal, against the largest value.
+# Difference that counts as none, relative to the largest value.
 _EQUAL = 1e-9
 
 
@@ -40,7 +40,7 @@ class Review:
     ranges : dict of str to (float, float)
         What each output reaches, and α and β where they follow from the outputs.
     symmetry : str
-        What becomes of the outputs when all inputs change sign.
+        How the outputs change when all inputs change sign.
     table_bounds : dict of str to float
         Error bounds of the interpolation table; empty with more than two inputs.
     schedules : str
@@ -126,7 +126,7 @@ def review(rules: RuleBase) -> Review:
     Raises
     ------
     RuleBaseError, ValueError
-        If it means to schedule gains, and cannot.
+        If it has scheduler settings, but cannot schedule gains.
     """
     settings = dict(rules.scheduler)
     if settings:
@@ -203,5 +203,5 @@ def _parity(values: Array, mirrored: Array) -> str:
 
 
 def _table_bounds(rules: RuleBase) -> dict[str, float]:
-    # With more inputs a table takes long to measure, and is of little use.
+    # With more inputs the error of a table takes long to measure, and tables are little used.
     return FuzzySystem(rules).table_bounds if len(rules.inputs) <= _TABLE_INPUTS else {}

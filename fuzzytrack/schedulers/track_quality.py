@@ -1,4 +1,4 @@
-"""Gains from track quality: hits raise it, misses lower it."""
+"""Gains by the quality of a track, which plots raise and misses lower."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class QualityGains(GainScheduler):
     Parameters
     ----------
     cap : float
-        Highest quality, >= 1. 10 is safe: the gains end at those of α = 0.295. The paper's table
-        has 30 entries, see `as_published`.
+        Highest quality, >= 1. With 10 the gains fall to those of α = 0.295, which is enough for a
+        vessel that turns. The paper's table has 30 entries, see `as_published`.
     drop : float
         Loss of quality by a miss, >= 0.
 
@@ -44,12 +44,11 @@ class QualityGains(GainScheduler):
 
     Notes
     -----
-    Zhang & Jiang, formulas of the gate and of the smoothing filter. They say of a miss only that
-    the quality is lowered by more than 1; 3 is our choice. From N of about 12 on, the gains are too
-    small for a vessel that turns: with the cap of 30, tracks of turning vessels lag and are lost,
-    unless `drop` is 10 or more. The memory is the quality: -1 before the first plot, 0 after it;
-    a gate can read it there. Where a one-point start asks for gains at a quality of 0, they are
-    those of 1.
+    Zhang & Jiang, formulas of the gate and of the smoothing filter. The paper states only that a
+    miss lowers the quality by more than 1; 3 is our choice. From an N of about 12 on, the gains are
+    too small for a vessel that turns: with the cap of 30, tracks of turning vessels lag and are
+    lost, unless `drop` is 10 or more. The memory is the quality, -1 before the first plot and 0
+    after it; a gate can use it. With a one-point start the gains at a quality of 0 are those of 1.
 
     Examples
     --------

@@ -203,7 +203,7 @@ def test_certified(run, reach, rate):
     text = run("certify", "stiffness-damping", "--reach", reach).stdout
     assert text.startswith("stiffness-damping: certified\n")
     assert f"to {found['rate']:.4f} of what it was" in text
-    assert "Missed plots, at which nothing is corrected, are not included.\n" in text
+    assert "Missed plots, at which no correction is made, are not included.\n" in text
 
 
 def test_refuted_by_an_explicit_sequence(run):

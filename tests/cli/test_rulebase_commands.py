@@ -69,7 +69,7 @@ def test_show(run):
     assert "nl       S-L   M-L   L-L   L-L   S-L   Z-M   Z-S" in text.replace(
         "nl     ", "nl     "
     ) or ("nl      S-L  M-L  L-L  L-L  S-L  Z-M  Z-S" in text)
-    assert "normalised error rate" in text
+    assert "normalized error rate" in text
     found = json.loads(run("rulebase", "show", "stiffness-damping", "--json").stdout)
     assert len(found["rules"]) == 49
     assert found["outputs"][0]["universe"] == [0.25, 0.35, 41]
@@ -210,7 +210,7 @@ def test_set_elsewhere(run, fails, tmp_path):
     [
         ("dE=ns,E=pl", "M-Q", "unknown set of damping 'Q'"),
         ("dE=nss,E=pl", "M-Z", "dE has no set 'nss'"),
-        ("dE=ns", "M-Z", "no rule has just the conditions dE=ns"),
+        ("dE=ns", "M-Z", "no rule has exactly the conditions dE=ns"),
         ("dE", "M-Z", "--cell: expected NAME=VALUE"),
     ],
 )

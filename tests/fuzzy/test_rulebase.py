@@ -75,7 +75,10 @@ def test_a_rule_reads_as_it_is_written():
         ({"rules": (rule({"x": "a"}, is_set("out", "u")),)}, ("out has no set 'u'", "s, t")),
         (
             {"rules": (RULE, rule({"y": "b", "x": "a"}, is_set("out", "t")))},
-            ("doubled rule: if y is b and x is a then out is t", "if x is a and y is b"),
+            (
+                "two rules with the same conditions: if y is b and x is a then out is t",
+                "if x is a and y is b",
+            ),
         ),
         (
             {"outputs": (OUT, Variable("unused", OUT.universe, OUT.sets))},

@@ -342,7 +342,7 @@ def test_cells_that_share_their_text_are_left_alone():
     [
         ({"E": "lo", "dE": "zz"}, "S-S", "dE has no set 'zz'; one of ne, ze, po"),
         ({"E": "lo", "F": "ze"}, "S-S", "unknown input 'F'"),
-        ({"E": "lo"}, "S-S", "no rule has just the conditions E=lo"),
+        ({"E": "lo"}, "S-S", "no rule has exactly the conditions E=lo"),
         ({}, "S-S", "no rule"),
         ({"E": "lo", "dE": "ze"}, "S-M", "<cell>:1:3: unknown set of grip 'M'"),
         ({"E": "lo", "dE": "ze"}, "S-S, S-S", "<cell>:1:1: "),

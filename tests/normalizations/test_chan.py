@@ -24,8 +24,8 @@ def signals(normalization, innovation, change, memory, sigma=1.0, n_axes=1):
     [(1, 2, 0.5), (1, -2, 0.5), (1, -1, 1), (0, 3, 0), (0, 0, 0), (2, 1, 1)],
 )
 def test_chan_error(error, moved, expected):
-    (normalised, _), memory = signals(Chan(), float(error), float(moved), (0.0,))
-    assert normalised == expected
+    (normalized, _), memory = signals(Chan(), float(error), float(moved), (0.0,))
+    assert normalized == expected
     assert memory == (expected,)
 
 
@@ -44,7 +44,7 @@ def test_chan_error(error, moved, expected):
     ],
 )
 def test_chan_error_rate(now, before, expected):
-    # An innovation of `now` against a displacement of 1 is a normalised error of `now`.
+    # An innovation of `now` against a displacement of 1 is a normalized error of `now`.
     (_, rate), _ = signals(Chan(), float(now), 1.0, (float(before),))
     assert rate == pytest.approx(expected)
 

@@ -171,7 +171,7 @@ def test_gain_surfaces_of_direct_gains_are_the_outputs(rules, drawn):
         (lambda r, v: plot_surface(r, method="fast"), "method: unknown 'fast'; one of exact"),
         (lambda r, v: plot_surface(r, points=1), "points must be at least 2, got 1"),
         (lambda r, v: plot_surface(v, points=1), "points: must be at least 2, got 1"),
-        (lambda r, v: plot_surface(v, at={"w": 1.0}), "one input; there is nothing to choose"),
+        (lambda r, v: plot_surface(v, at={"w": 1.0}), "inputs, at: only for several inputs"),
         (lambda r, v: plot_gain_surfaces(r), "rules: lopsided has outputs u; gains need"),
         (lambda r, v: plot_gain_surfaces(r, style="x"), "style: unknown 'x'"),
         (lambda r, v: plot_relation(r), "rules: lopsided has inputs x, y"),

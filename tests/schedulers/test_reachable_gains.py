@@ -94,5 +94,5 @@ def test_what_cannot_be_certified():
         consequents=(Consequent("stiffness", "S", 0.5), Consequent("damping", "L", 1.0)),
     )
     uneven = replace(rules, rules=(unsure, *rules.rules[1:]))
-    with pytest.raises(ft.RuleBaseError, match="as sure of stiffness as of damping"):
+    with pytest.raises(ft.RuleBaseError, match="same confidence for stiffness and damping"):
         certify(uneven, reach="rules")

@@ -238,7 +238,7 @@ def test_rule_bases_beside_the_scenario(tmp_path, monkeypatch):
         ),
         (HEAD + SENSORS, "s.yaml:1:1: the scenario lacks the key 'target'"),
         (HEAD + TARGET, "s.yaml:1:1: the scenario lacks the key 'sensors'"),
-        (HEAD + TARGET + TARGET + SENSORS, "s.yaml:4:1: doubled key 'target'"),
+        (HEAD + TARGET + TARGET + SENSORS, "s.yaml:4:1: key 'target' is given twice"),
         (
             f"{HEAD}{TARGET}{SENSORS}start: early\n",
             "s.yaml:5:8: unknown start 'early'; allowed: as-seen, interpolate",
