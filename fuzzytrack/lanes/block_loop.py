@@ -1,7 +1,7 @@
-"""The compiled passage of a job: all its lanes, block by block, over all time steps.
+"""The compiled loops of a job: over blocks of lanes, and within a block over all time steps.
 
-It is the same for all trackers and compiled once: what a tracker does in a step it is given as the
-address of compiled code. Importing this needs Numba.
+They are compiled once for all trackers, and call the step of a tracker by the address of its
+compiled code. Importing this module needs Numba.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ __all__ = ["compiled_one_step", "compiled_run", "layout"]
 
 
 def layout(rows: Rows) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """What the passage has to know of the rows of a lane: sizes and places, and of each output."""
+    """What the loops need to know of the rows of a lane: sizes and places, and those of outputs."""
     places = (rows.n_axes, rows.state, rows.kept, rows.plot, rows.sigma, rows.dt, rows.plots)
     return places, tuple(rows.output(name) for name in OUTPUTS)
 
 
-# Views first: the compiler sees that their indices cannot be negative, and copies in one go.
+# Of a view the compiler sees that indices are not negative, so it copies whole vectors.
 def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int) -> None:
     into = b[row * BLOCK : row * BLOCK + count]
     if stride == 0:
@@ -66,8 +66,9 @@ def _run(
 ) -> int:  # fmt: skip
     """Run the lanes from `first` to before `last` of a job over all time steps.
 
-    `steady` is 0 if there is none, and leaves results in the buffer or not; the last step does, for
-    the state. How many plots were infinite is returned.
+    `step` and `steady` are addresses; `steady` is 0 if there is none. `results` says whether the
+    latter leaves results in the buffer; the last step always does, for the state. Returned is how
+    many plots were infinite.
     """
     n_axes, state, kept, plot_row, sigma_row, dt_row, plots_row = places
     use_wide_vectors()
@@ -97,7 +98,7 @@ def _run(
                 call(step, (pointer(b, 0), count))
                 settled = (steady != 0) & (dt_strides[1] == 0)
                 settled = settled and _all_have(b, plots_row, count, 2.0)
-            # Gains there is one a lane, of the others one an axis.
+            # A lane has one of each gain, and one of every other output for each axis.
             for o in range(1 if straight else 0, len(outputs)):
                 if len(outputs[o]):
                     width = n_axes if o < len(outputs) - 3 else 1

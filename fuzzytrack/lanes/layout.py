@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 __all__ = ["BLOCK", "GAINS", "OUTPUTS", "Rows", "aligned"]
 
-#: Lanes a block, and numbers between the rows of its buffer: whole pairs of vectors of 64 bytes,
-#: single precision included. A few rows of it stay clear of one another in the cache, where
-#: distances count by the remainder of 4,096 bytes.
+#: Number of lanes of a block, and of numbers between the rows of its buffer: a multiple of two
+#: vectors of 64 bytes, also in single precision, but no power of two, at which distance rows would
+#: displace one another from the cache.
 BLOCK = 288
 
 #: Names of the gains, in the order in which they lie in a lane.
 GAINS = ("alpha", "beta", "gamma")
 
-#: What a run can write down, in this order.
+#: Names of the outputs of a run, in the order of the compiled loops.
 OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "innovation", *GAINS)
 
 
@@ -149,7 +149,7 @@ class Rows:
 
 
 def aligned(count: int, dtype: type = np.float64) -> NDArray[Any]:
-    """Zeros that begin with a line of the cache."""
+    """Zeros that begin at the start of a cache line (64 bytes)."""
     numbers: NDArray[Any] = np.zeros(count + 16, dtype)
     skipped = -(numbers.ctypes.data // numbers.itemsize) % (64 // numbers.itemsize)
     return numbers[skipped : skipped + count]

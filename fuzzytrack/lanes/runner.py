@@ -20,12 +20,12 @@ from fuzzytrack.lanes.program import LaneProgram
 __all__ = ["InfinitePlotError", "Runner"]
 
 
-#: Coordinates, over all jobs of a runner, above which compiling pays; below, plain Python is done
-#: sooner. Measured for a new tracker; code that is on disk would pay from a third of that.
+#: Number of coordinates, over all jobs of a runner, above which compiling saves time. Measured for
+#: a tracker that is not on disk yet; for one that is, it would be a third.
 COMPILE_ABOVE = 200_000
-#: Coordinates of a job from which several threads pay.
+#: Number of coordinates of a job from which several threads save time.
 THREADS_ABOVE = 500_000
-#: Parts of a job for each thread, so that none waits long for the last.
+#: Parts of a job for each thread: more than one, since parts do not take equally long.
 PARTS = 4
 
 
@@ -43,7 +43,7 @@ class Runner:
     ----------
     program : LaneProgram
     work : int
-        Coordinates that were tracked so far.
+        Number of coordinates tracked so far.
     horizon : int
         What `work` will be after the jobs that were announced.
     common_step, own_step : callable or None
@@ -64,7 +64,7 @@ class Runner:
         return self.program.rows
 
     def fresh(self, count: int) -> Array:
-        """Lanes that have seen nothing, shape (rows.kept, count)."""
+        """Lanes before their first plot, shape (rows.kept, count)."""
         lanes = np.zeros((self.rows.kept, count))
         lanes[: self.rows.velocity] = np.nan
         lanes[self.rows.memory : self.rows.state] = np.reshape(self.program.memory, (-1, 1))
@@ -85,14 +85,14 @@ class Runner:
         Parameters
         ----------
         lanes : ndarray, shape (rows.kept, lanes), or None
-            None for lanes that have seen nothing.
+            None for lanes before their first plot.
         plots : ndarray, shape (n_steps, lanes, n_axes)
-            Of the type of number to work with.
+            Its dtype, float64 or float32, is that of the calculation.
         dts : ndarray, shape (n_steps, lanes or 1)
         sigmas : ndarray of three axes that broadcasts with `plots`
         native : bool, optional
-            Whether to run compiled; unless given, once the jobs together are large enough to pay
-            for the compilation, or in single precision. The results are the same.
+            Whether to run compiled; unless given, in single precision, or once the jobs together
+            are large enough to make up for the compilation. The results are the same.
         keep : sequence of str
             Outputs wanted.
         threads : int, optional
@@ -159,7 +159,7 @@ class Runner:
             raise InfinitePlotError
         step, rows = self._plain_step, self.rows
         n_steps, count, _ = plots.shape
-        # What a step is given, in the order of the rows: plot, sigma, time step.
+        # In the order of the rows: plot, sigma, time step.
         all_dts = np.broadcast_to(dts[:, :, None], (n_steps, count, 1))
         given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
         # Looked up once: this is the inner loop of a small job.
@@ -176,7 +176,7 @@ class Runner:
             if history:
                 trace[:, lane] = history
                 after[:, lane] = b[:n_kept]
-        # What lies between state and results is not in the trace.
+        # The trace does not have the rows between state and results.
         skipped = rows.predicted - n_state
         outputs = {}
         for name in keep:
@@ -195,7 +195,7 @@ class Runner:
         keep: Sequence[str] = OUTPUTS,
         threads: int | None = None,
     ) -> tuple[Array, dict[str, NDArray[Any]]]:
-        from fuzzytrack.lanes import block_loop as passage
+        from fuzzytrack.lanes import block_loop
 
         (n_steps, count, n_axes), dtype = plots.shape, plots.dtype.type
         shapes = {name: plots.shape[:2] if name in GAINS else plots.shape for name in keep}
@@ -208,10 +208,10 @@ class Runner:
             tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
         )  # fmt: skip
         results = bool({*keep} & {"innovation", *GAINS})
-        # A single step is never steady: a stream does not stop to compile what it will not use.
+        # A single step is never steady, so a stream of plots does not wait for its compilation.
         steady = self.steady_code(results, dtype) if n_steps > 1 else None
         step = self.step_code(dtype)
-        run, places = passage.compiled_run(), passage.layout(self.rows)
+        run, places = block_loop.compiled_run(), block_loop.layout(self.rows)
         code = (step.address, 0 if steady is None else steady.address, results)
 
         def part(ends: tuple[int, int]) -> int:
@@ -230,7 +230,7 @@ class Runner:
         return ("step", np.float64) in self._code
 
     def compile(self) -> None:
-        """Compile now whatever is ever going to be in double precision."""
+        """Compile now all that double precision can need."""
         if self.own_step is not None:
             return
 
@@ -244,10 +244,10 @@ class Runner:
 
     def _one_step(self, ones: float | Array) -> Callable[..., int]:
         """Compiled step of all lanes, for time steps and sigmas of the type of `ones`."""
-        from fuzzytrack.lanes import block_loop as passage
+        from fuzzytrack.lanes import block_loop
 
         rows, lanes, plots = self.rows, self.fresh(1), np.ones(self.rows.n_axes)
-        one_step: Any = passage.compiled_one_step(isinstance(ones, np.ndarray))
+        one_step: Any = block_loop.compiled_one_step(isinstance(ones, np.ndarray))
         places = (self.step_code().address, rows.n_axes, rows.state, rows.kept, rows.plot)
         one_step(*places, aligned(rows.total * BLOCK), lanes, plots, ones, ones, lanes)
         # The one signature there is, without asking again which it is.
@@ -258,7 +258,7 @@ class Runner:
         return self._compiled_once(("step", dtype), lambda: self.program.step(BLOCK), "vpi")
 
     def steady_code(self, results: bool, dtype: type = np.float64) -> Any:
-        """Compiled steady function, or None; that with the results of every step or without."""
+        """Compiled steady function, with or without results; None if there is none."""
         steady = self.program.steady
         if steady is None:
             return None
@@ -268,7 +268,7 @@ class Runner:
         self, key: tuple[object, type], make: Callable[[], Callable[..., Any]], arguments: str
     ) -> Any:
         if key not in self._code:
-            # Threads may compile at once; all must go on with the one that is kept.
+            # Two threads may compile at the same time; both must use the code that is kept.
             self._code.setdefault(key, entry_point(make(), arguments, key[1]))
         return self._code[key]
 
@@ -295,8 +295,8 @@ def _in_parts(part: Callable[[tuple[int, int]], int], count: int, threads: int) 
 
 
 def _in_a_row(array: NDArray[Any], dtype: type) -> NDArray[Any]:
-    """Its numbers as one type of array, or the passage would be compiled once for each."""
-    # Where a plot is missed, a sigma may be of any size.
+    """Its numbers as one type of array; the loops would be compiled anew for any other."""
+    # A sigma may be too large for the type where its plot is missing.
     with np.errstate(over="ignore"):
         row: NDArray[Any] = np.ascontiguousarray(array, dtype).reshape(-1)
     row.flags.writeable = False

@@ -1,4 +1,4 @@
-"""The one recursion: an α-β-γ filter over a block of tracks, for any scheduler.
+"""The step of an α-β-γ filter with the gains of any scheduler.
 
 ::
 
@@ -6,11 +6,11 @@
     correct   e = z − x⁻
               x = x⁻ + α·e                 v = v⁻ + (β/T)·e    a = φ·(a⁻ + (γ/(2T²))·e)
 
-`_advance` holds all of it. Its source runs in two ways with the same result to the last bit:
-in plain Python over a list, for streaming and small jobs, and compiled over arrays, for batches.
-That is why it is written over a flat sequence, with selects instead of branches, and without any
-library call. The state of a block of lanes lies in one buffer, row by row (see `Rows`), so that the
-compiler sees constant distances and can work on neighbouring lanes at once.
+`_advance` makes the function that does this for one lane. The same source runs in plain Python
+over a list, for streaming and small jobs, and compiled over arrays, for batches, with the same
+results to the last bit. So it works on a flat sequence, in which the numbers of a block of lanes
+lie row by row (see `Rows`), with selections (``a if condition else b``) instead of branches: the
+compiler can then work on neighboring lanes at once.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = ["steady_function", "step_function"]
 def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., Any]:
     """The scheduler's kernel, called with scalars or, if it is coupled, with tuples.
 
-    A kernel never sees a missing plot: where it is not asked, it gets zeros.
+    It gets zeros where there is no plot or no prediction; then its answer is dropped.
     """
     n_axes = rows.n_axes
     kernel = scheduler.kernel(n_axes)
@@ -84,7 +84,7 @@ def _advance(
     call = _caller(scheduler, rows, stride)
     remembered, remember = gather(n_memory, stride), scatter(n_memory, stride)
     end_axis = axis_end(rows, stride, results=results)
-    # While a track is running nobody asks for the time since its last plot.
+    # The time since the last plot is used at the second plot only.
     end_lane = lane_end(
         rows, stride, two_point=two_point, keep_gap=False, settled=settled, results=results
     )
@@ -104,7 +104,7 @@ def _advance(
             seen = seen & (z == z)
         dt, gap, running, update = begin_step(plots, b[gap_row + i], dt, seen)
         rate = 1.0 / dt
-        # A plot that the kernel is told of, and a step after which its memory is kept.
+        # Whether the kernel is given the plot's sigma, and whether its memory is kept.
         told = update | (seen & every_step)
         kept = told | ((plots > 0.0) & every_step)
 
@@ -140,21 +140,21 @@ def _advance(
     return advance
 
 
-# The loops over axes stand in functions of their own: a variable that outlives a lane makes the
-# compiler take the first lane of a block apart from the others.
+# These loops over axes are functions of their own: with a loop variable that is still there at the
+# next lane, the compiler treats the first lane of a block apart from the others.
 def _take(own: Any, n_axes: int, source: Any, start: int, stride: int) -> None:
     for j in range(n_axes):
         own[j] = source[start + j * stride]
 
 
 def _give(own: Any, n_axes: int, target: Any, start: int) -> None:
-    """Hand the predictions out, but for that of the last axis."""
+    """Write the predictions of all axes but the last one."""
     for j in range(n_axes - 1):
         target[start + j] = own[n_axes + j]
 
 
 def _no_promise() -> None:
-    """Lanes of several axes share the memory of their `own_numbers`."""
+    """Do nothing: lanes of several axes are not independent, they share their `own_numbers`."""
 
 
 def step_function(
@@ -168,7 +168,8 @@ def step_function(
     rows : Rows
         Layout of the buffer: row `r` of lane `i` is at ``r * stride + i``.
     two_point : bool
-        Whether velocity starts from the first two plots, without asking the scheduler.
+        Whether velocity starts from the first two plots; otherwise it starts at 0, and the
+        scheduler corrects it from the second plot on.
     stride : int
         Numbers between rows.
     """
@@ -192,21 +193,21 @@ def steady_function(
 ) -> Callable[[Any, int, float, Any, Any], None]:
     """As `step_function`, for lanes that have all started and have their time step in common.
 
-    What is known beforehand drops out when it is compiled: divisions by the time step, starts.
-    Plots come straight from the job, and predictions go straight into the result.
+    The compiler removes what is the same for all of them: divisions by the time step, and starts.
+    Plots are read from the arrays of the job, and predictions are written into its result.
 
     Parameters
     ----------
     scheduler, rows, stride
         As there.
     results : bool
-        Whether to leave the results in the buffer, too.
+        Whether to write the other results into the buffer.
 
     Returns
     -------
     callable
-        ``steady(buffer, count, dt, plots, predicted)``. The last two have the axes of a lane side
-        by side.
+        ``steady(buffer, count, dt, plots, predicted)``; the axes of a lane are side by side in
+        `plots` and `predicted`.
     """
     advance = _advance(scheduler, rows, True, stride, settled=True, results=results)
     n_axes, size, last = rows.n_axes, 5 * rows.n_axes, rows.n_axes - 1

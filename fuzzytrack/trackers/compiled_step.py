@@ -1,4 +1,4 @@
-"""The short way from a state to the next one, through compiled code."""
+"""A single step through compiled code, with no more checks than it needs."""
 
 from __future__ import annotations
 
@@ -17,16 +17,13 @@ __all__ = ["CompiledStep"]
 
 _FLOAT = np.dtype(np.float64)
 _NUMBERS = (float, int)
-_set_time, _set_shape, _set_lanes, _set_rows = (
-    vars(TrackState)[name].__set__ for name in ("time", "shape", "lanes", "rows")
-)
 
 
 class CompiledStep:
     """Steps states of one layout, any number of tracks.
 
-    It takes the ordinary case only: floats, times as a number or as an array with one for each
-    track, and sigmas as a number or an array. Whatever is different, or wrong, is left to
+    It serves the ordinary case only: floats, times as a number or as an array with one for each
+    track, and sigmas as a number or an array. Everything else, errors included, is left to
     `fuzzytrack.trackers.lane_tracker.LaneTracker`, which has the checks and the messages.
 
     Parameters
@@ -38,7 +35,7 @@ class CompiledStep:
     """
 
     def __init__(self, core: Runner, needs_sigma: bool) -> None:
-        # Its code is called by address, and must not go.
+        # Compiled code is called by its address, so it must be kept.
         self._core = core
         self._common_step: Any = core.common_step
         self._own_step: Any = core.own_step
@@ -49,7 +46,7 @@ class CompiledStep:
         self._buffers: list[NDArray[np.float64]] = []
 
     def __call__(self, state: TrackState, z: Any, t: Any, sigma: Any) -> TrackState | None:
-        """Next state, or None where there is more to say or do."""
+        """Next state; None if the arguments are not of the ordinary kind, or wrong."""
         if type(z) is not np.ndarray:
             if isinstance(z, np.ma.MaskedArray):
                 return None
@@ -93,13 +90,7 @@ class CompiledStep:
         self._buffers.append(buffer)
         if bad:
             return None
-        # The constructor of a frozen class takes as long as all the arithmetic.
-        new = object.__new__(TrackState)
-        _set_time(new, t)
-        _set_shape(new, shape)
-        _set_lanes(new, after)
-        _set_rows(new, rows)
-        return new
+        return TrackState.unchecked(t, shape, after, rows)
 
 
 def _of_each(

@@ -79,7 +79,7 @@ def _exp(x: float) -> float:
     """Exponential for -300 <= x <= 300, to a relative 1e-13.
 
     Compilers take theirs from one library or another, which differ in the last bit; this one is the
-    same everywhere, and is worked out for neighbouring lanes at once. It is the series of
+    same everywhere, and is worked out for neighboring lanes at once. It is the series of
     exp(x/1024) - 1, squared up ten times without losing what is small.
     """
     r = (x if x > 0.0 else -x) / 1024.0
@@ -234,7 +234,7 @@ def step_function(pair: ModelPair, rows: Rows, stride: int) -> Callable[[Any, in
     """Function that does one time step of the first lanes of a buffer, in place.
 
     It goes through all lanes five times, once for each thing to be done to them, and through the
-    lanes inside of the axes: so the compiler can work on neighbouring lanes at once.
+    lanes inside of the axes: so the compiler can work on neighboring lanes at once.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Trackers whose arithmetic runs over lanes: at once or plot by plot, with the same numbers."""
+"""The base of trackers that are given by their step of a lane."""
 
 from __future__ import annotations
 
@@ -35,9 +35,11 @@ __all__ = ["LaneTracker", "announce", "runner"]
 
 
 class LaneTracker(ABC):
-    """A tracker that is given by its lane program; all of `fuzzytrack.Tracker` follows from it.
+    """A tracker that is given by its lane program.
 
-    It is immutable and hashable, and must pickle: make it a frozen dataclass.
+    A subclass implements `program` and has everything else of `fuzzytrack.Tracker`: batches, single
+    steps, missed plots, irregular times, predictions and compilation. It must be immutable and
+    hashable, and pickle: make it a frozen dataclass.
 
     Attributes
     ----------
@@ -63,7 +65,7 @@ class LaneTracker(ABC):
 
     @abstractmethod
     def program(self, n_axes: int) -> LaneProgram:
-        """The arithmetic of a lane.
+        """Arithmetic of a lane.
 
         Parameters
         ----------
@@ -261,8 +263,8 @@ class LaneTracker(ABC):
     def compile(self, n_axes: int = 1) -> None:
         """Compile now what `run` compiles when a job is large, and make `step` run compiled.
 
-        Until then `step` runs in plain Python, unless a large `run` went before: a stream of plots
-        never stops for the compiler. Compiled code is kept on disk for the next process.
+        Until then, or until a large `run`, `step` runs in plain Python: a stream of plots does not
+        wait for the compiler. Compiled code is kept on disk for the next process.
 
         Parameters
         ----------
@@ -333,7 +335,7 @@ class LaneTracker(ABC):
         return plot_sigmas(sigma, plots, self.name if self.needs_sigma else None)
 
 
-# Asked by identity first; comparing rule bases takes longer than a step.
+# The cache is asked by identity first, since comparing two rule bases takes longer than a step.
 @dataclass(frozen=True, eq=False)
 class _Identity:
     tracker: LaneTracker
@@ -363,7 +365,7 @@ def announce(tracker: object, n_axes: int, coordinates: int) -> None:
     Parameters
     ----------
     tracker : object
-        A tracker; of one that is no `LaneTracker` nothing is asked.
+        A tracker; nothing is done unless it is a `LaneTracker`.
     n_axes : int
         Axes of the plots.
     coordinates : int

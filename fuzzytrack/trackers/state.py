@@ -64,6 +64,28 @@ class TrackState:
             raise ValueError(f"lanes: shape {lanes.shape}; plots of {self.shape} need {expected}")
         object.__setattr__(self, "lanes", lanes)
 
+    @classmethod
+    def unchecked(
+        cls, time: Array | np.float64, shape: tuple[int, ...], lanes: Array, rows: Rows
+    ) -> TrackState:
+        """State of values that are known to fit; for a stream of plots.
+
+        The constructor of a frozen class takes as long as a compiled step: it sets each attribute
+        through `object.__setattr__`, and then checks them. Here the slots are set directly, which
+        is possible for an object that nobody has seen yet.
+
+        Parameters
+        ----------
+        time, shape, lanes, rows
+            As for the class; `lanes` is contiguous.
+        """
+        state = object.__new__(cls)
+        _set_time(state, time)
+        _set_shape(state, shape)
+        _set_lanes(state, lanes)
+        _set_rows(state, rows)
+        return state
+
     def _read(self, row: int, count: int) -> Array:
         # A copy: what is written into it must not change the state.
         return np.array(self.lanes[row : row + count].T).reshape(self.shape)
@@ -98,6 +120,11 @@ class TrackState:
         """Gains of the last step."""
         rows = self.lanes[self.rows.gains : self.rows.gains + 3]
         return Gains(*(gains_as_plots(row, self.shape, self.rows.n_axes) for row in rows))
+
+
+_set_time, _set_shape, _set_lanes, _set_rows = (
+    vars(TrackState)[name].__set__ for name in ("time", "shape", "lanes", "rows")
+)
 
 
 def check_rows(state: TrackState, rows: Rows, name: str) -> None:
