@@ -6,6 +6,7 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.kernels.rebuild import fingerprint
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import (
     BenedictBordner,
@@ -70,6 +71,15 @@ TRACKERS = {
 @parametrize_with_checks({**SCHEDULERS, **TRACKERS})
 def test_contract(check):
     check()
+
+
+@pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])
+def test_compiled_code_can_be_kept_on_disk(name):
+    program = (TRACKERS.get(name) or ft.AlphaBetaTracker(SCHEDULERS[name])).program(2)
+    functions = [program.step(8)]
+    if program.steady is not None:
+        functions += [program.steady(8, True), program.steady(8, False)]
+    assert None not in map(fingerprint, functions)
 
 
 @pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])

@@ -59,17 +59,20 @@ class KernelFolder:
         if named is None:
             import platformdirs
 
-            return cls(platformdirs.user_cache_path("fuzzytrack", appauthor=False) / "kernels")
+            try:
+                home = platformdirs.user_cache_path("fuzzytrack", appauthor=False)
+            # Older versions return a path that begins with "~" for a user without a home folder.
+            except RuntimeError:
+                home = Path("~")
+            return cls(home / "kernels")
         return cls(None if named in ("", "off") else Path(named).absolute())
 
     def read(self, name: str) -> bytes | None:
         """Content of a file, or None if there is none that can be trusted."""
-        if self.path is None:
+        if self.path is None or self._untrusted(self.path):
             return None
         file = self._file(name)
         try:
-            if _writable_by_others(self.path.stat()):
-                return None
             with file.open("rb") as stream:
                 if _writable_by_others(os.fstat(stream.fileno())):
                     return None
@@ -123,18 +126,25 @@ class KernelFolder:
 
     def _make(self) -> str | None:
         """Make the folder; returns why it cannot be used, or None."""
-        path = self.path
-        assert path is not None
+        assert self.path is not None
+        if self.path.is_absolute():
+            try:
+                self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
+            except OSError as error:
+                return f"{self.path}: {error.strerror or error}"
+        return self._untrusted(self.path)
+
+    @staticmethod
+    def _untrusted(path: Path) -> str | None:
+        """Why a folder is neither read nor written, or None."""
         if not path.is_absolute():
-            # Of a user without a home folder, platformdirs gives a path that begins with "~".
             return "the user has no home folder"
         try:
-            path.mkdir(mode=0o700, parents=True, exist_ok=True)
-            if _writable_by_others(path.stat()):
-                return f"{path}: other users can write there"
+            return (
+                f"{path}: other users can write there" if _writable_by_others(path.stat()) else None
+            )
         except OSError as error:
             return f"{path}: {error.strerror or error}"
-        return None
 
     def _replace(self, file: Path, content: bytes) -> None:
         """Write a file whole or not at all, for the owner only."""

@@ -152,12 +152,21 @@ def test_the_environment_names_the_folder(tmp_path, monkeypatch):
     assert "fuzzytrack" in KernelFolder.of_user().path.parts
 
 
-def test_a_user_without_a_home_keeps_nothing(tmp_path, monkeypatch):
+@pytest.mark.parametrize("older", [False, True], ids=["platformdirs raises", "platformdirs: ~"])
+def test_a_user_without_a_home_keeps_nothing(tmp_path, monkeypatch, older):
+    def cache_path(name, appauthor):
+        if older:
+            return Path("~", ".cache", name)
+        raise RuntimeError("no home")
+
     monkeypatch.chdir(tmp_path)
-    folder = KernelFolder(Path("~", ".cache"))
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setattr("platformdirs.user_cache_path", cache_path)
+    folder = KernelFolder.of_user()
     assert folder.problem() == "the user has no home folder"
     with pytest.warns(CacheWarning, match="no home folder"):
         folder.write("a", b"code")
+    assert folder.read("a") is None
     assert list(tmp_path.iterdir()) == []
 
 
