@@ -15,6 +15,7 @@ from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.workers import workers
 
@@ -49,7 +50,7 @@ class LargeJob:
     def of(
         cls,
         path: PathLike,
-        tracker: Tracker,
+        tracker: Tracker | str,
         sigma: float | None = None,
         rows: int | None = None,
         *,
@@ -63,8 +64,9 @@ class LargeJob:
         ----------
         path : str or path
             CSV or Parquet file, or a folder of Parquet files.
-        tracker : Tracker
-            Any of this package.
+        tracker : Tracker or str
+            Any of this package, or what names it, see
+            `fuzzytrack.trackers.catalog.make_tracker`.
         sigma : float, optional
             Standard deviation of the plots (m).
         rows : int, optional
@@ -81,14 +83,10 @@ class LargeJob:
         OSError
             If a file cannot be read.
         """
-        if not isinstance(tracker, LaneTracker):
-            raise ValueError(
-                f"tracker: {type(tracker).__name__} cannot go on from piece to piece; it needs a "
-                "file that is tracked as a whole"
-            )
+        made = as_lane_tracker(tracker)
         files = recording_files(path)
         columns = find_columns(files, time=time, id=id, axes=axes)
-        return cls(files, columns, tracker, sigma, ROWS if rows is None else rows)
+        return cls(files, columns, made, sigma, ROWS if rows is None else rows)
 
     def track(self, output: PathLike | None, progress: Progress | None = None) -> Totals:
         """Track piece by piece.

@@ -19,6 +19,7 @@ from fuzzytrack.recordings.partition_files import read_partition, write_partitio
 from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress, run_tasks
+from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 
 __all__ = ["track_partitions"]
@@ -46,7 +47,7 @@ class _Job:
 
 
 def track_partitions(
-    tracker: LaneTracker,
+    tracker: LaneTracker | str,
     files: Sequence[str],
     columns: Columns,
     output: PathLike,
@@ -61,8 +62,8 @@ def track_partitions(
 
     Parameters
     ----------
-    tracker : LaneTracker
-        The tracker.
+    tracker : LaneTracker or str
+        The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
     files : sequence of str
         Files of the recording, in order of time.
     columns : Columns
@@ -104,10 +105,10 @@ def track_partitions(
     """
     if partitions < 1:
         raise ValueError(f"partitions must be at least 1, got {partitions}")
-    totals = Totals()
+    made, totals = as_lane_tracker(tracker), Totals()
     with whole_folder(output) as draft:
         job = _Job(
-            tracker,
+            made,
             sigma,
             tuple(map(os.path.abspath, files)),
             columns,

@@ -12,6 +12,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.recording import Piece
 from fuzzytrack.lanes.layout import GAINS
+from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 from fuzzytrack.trackers.result import checked_keep
 from fuzzytrack.trackers.track_store import Slots, TrackStore
@@ -37,7 +38,7 @@ class TrackedPiece:
 
 
 def run_iter(
-    tracker: LaneTracker,
+    tracker: LaneTracker | str,
     pieces: Iterable[Piece],
     *,
     sigma: float | None = None,
@@ -47,8 +48,9 @@ def run_iter(
 
     Parameters
     ----------
-    tracker : LaneTracker
-        The tracker: any of this package.
+    tracker : LaneTracker or str
+        The tracker: any of this package, or what names it, see
+        `fuzzytrack.trackers.catalog.make_tracker`.
     pieces : iterable of Piece
         Rows of any tracks in any order, but the rows of each track in order of time. A track may
         continue from piece to piece. See `fuzzytrack.io.read_pieces`.
@@ -105,16 +107,16 @@ class OpenTracks:
     Raises
     ------
     ValueError
-        If `keep` names an unknown output.
+        If `keep` names an unknown output, or the tracker cannot go on from piece to piece.
     """
 
     def __init__(
         self,
-        tracker: LaneTracker,
+        tracker: LaneTracker | str,
         sigma: float | None = None,
         keep: Sequence[str] | None = None,
     ) -> None:
-        self.tracker, self.sigma = tracker, sigma
+        self.tracker, self.sigma = as_lane_tracker(tracker), sigma
         self._keep = checked_keep(keep)
         self._slot: dict[str, int] = {}
         self._store: TrackStore | None = None

@@ -18,9 +18,12 @@ from fuzzytrack.schedulers import FuzzyScheduler, schedulers
 from fuzzytrack.schedulers.catalog import READERS, scheduling_rulebases, take_scheduler
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["CatalogEntry", "as_tracker", "as_trackers", "catalog", "make_tracker"]
+__all__ = [
+    "CatalogEntry", "as_lane_tracker", "as_tracker", "as_trackers", "catalog", "make_tracker",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -81,6 +84,23 @@ def as_tracker(tracker: Tracker | str) -> Tracker:
     Whatever takes a tracker takes a text as well, by this function.
     """
     return make_tracker(tracker) if isinstance(tracker, str) else tracker
+
+
+def as_lane_tracker(tracker: Tracker | str) -> LaneTracker:
+    """As `as_tracker`, for what tracks a recording piece by piece.
+
+    Raises
+    ------
+    ValueError
+        If the tracker has no state with which it can go on from piece to piece.
+    """
+    found = as_tracker(tracker)
+    if not isinstance(found, LaneTracker):
+        raise ValueError(
+            f"tracker: {type(found).__name__} cannot go on from piece to piece; it needs a "
+            "file that is tracked as a whole"
+        )
+    return found
 
 
 def as_trackers(trackers: Mapping[str, Tracker | str]) -> dict[str, Tracker]:

@@ -29,6 +29,7 @@ def test_a_job_counts_with_and_without_a_file(plots, tmp_path):
 def test_a_job_apart_is_the_same(plots, tmp_path):
     pytest.importorskip("pyarrow")
     job = LargeJob.of(plots, FIXED, id="id")
+    assert LargeJob.of(plots, "fixed:alpha=0.5:beta=0.2", id="id") == job
     apart = job.track_apart(tmp_path / "out", partitions=2)
     assert apart.tracks == 2
     assert apart.summary == pytest.approx(job.track(None).summary, rel=1e-12)

@@ -89,6 +89,13 @@ def test_a_partition_is_announced_before_it_is_tracked(files, tmp_path, monkeypa
     assert announced == [(TRACKER, len(columns.axes), len(columns.axes) * 500)] * 3
 
 
+def test_a_text_names_the_tracker(files, tmp_path):
+    columns = find_columns(files, id="id")
+    track_partitions("fixed:alpha=0.5:beta=0.2", files, columns, tmp_path / "a", partitions=1)
+    track_partitions(TRACKER, files, columns, tmp_path / "b", partitions=1)
+    assert sorted_rows(tmp_path / "a") == sorted_rows(tmp_path / "b")
+
+
 def test_a_partition_may_be_empty(files, tmp_path):
     columns = find_columns(files)  # one track
     table = pq.read_table(files[0]).slice(0, 9)

@@ -3,7 +3,9 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains, RuleBaseError, load_rulebase
 from fuzzytrack.fuzzy.saving import save_rulebase
+from fuzzytrack.io.recording import Piece
 from fuzzytrack.recordings.ragged import run_tracks
+from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.schedulers.catalog import make_scheduler
 from fuzzytrack.simulation.published import track_set
@@ -152,6 +154,12 @@ def an_experiment(tracker):
     return monte_carlo(scenario, {"a": tracker}, runs=3, seed=1).predicted
 
 
+def pieces(tracker):
+    piece = Piece.of(["a"] * len(TIMES), TIMES, TRUTH)
+    (tracked,) = run_iter(tracker, [piece])
+    return tracked.outputs["predicted"]
+
+
 def a_store(tracker):
     store = TrackStore(tracker, 2)
     slots = store.add(store.tracker.start([[0.0, 1.0]], 0.0))
@@ -161,6 +169,7 @@ def a_store(tracker):
 
 WAYS = {
     "run_tracks": lambda tracker: run_tracks(tracker, [(TIMES, TRUTH)])[0].predicted,
+    "run_iter": pieces,
     "compare": a_comparison,
     "compare_tracks": pooled,
     "monte_carlo": an_experiment,
