@@ -43,6 +43,11 @@ def test_failure_leaves_nothing_behind(tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["out.csv"]
 
 
+def test_a_table_without_rows(tmp_path):
+    with pytest.raises(DataError, match=r"f\.csv: holds no rows, only column names"):
+        read_table(written(tmp_path, "only\n"), lambda names: {"only": "word"})
+
+
 @pytest.mark.parametrize("name", ["a.csv", "a.txt", "a.parquet", "a.pq"])
 def test_tables_of_any_format(tmp_path, name):
     shares = []

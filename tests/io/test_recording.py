@@ -129,7 +129,10 @@ def test_one_track_and_no_rows(tmp_path):
     assert piece.ids.names == ("",)
     assert piece.plots.shape == (2, 1)
     none = parquet(tmp_path / "g.parquet", pa.array([], pa.string()), [], [])
-    assert list(read_pieces([none], XY)) == []
+    for rows in (5, None):
+        assert list(read_pieces([none], XY, rows=rows)) == []
+    with pytest.raises(DataError, match=r"g\.parquet: holds no rows, only column names"):
+        read_tracks(none)
 
 
 def test_a_piece_has_a_row_at_least():
