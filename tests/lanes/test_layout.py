@@ -1,0 +1,34 @@
+import pytest
+
+from fuzzytrack.lanes.layout import OUTPUTS, Rows
+
+
+@pytest.mark.parametrize("n_axes", [1, 3])
+def test_every_row_holds_one_thing(n_axes):
+    rows = Rows(n_axes, 4, scratch=("ratio", "exponent"))
+    widths = {
+        "position": n_axes, "velocity": n_axes, "acceleration": n_axes, "last_plot": n_axes,
+        "gap": 1, "plots": 1, "memory": 4, "predicted": n_axes, "innovation": n_axes, "gains": 3,
+        "plot": n_axes, "sigma": n_axes, "dt": 1,
+    }  # fmt: skip
+    taken = [
+        getattr(rows, name) + k for name, width in widths.items() for k in range(width)
+    ]  # fmt: skip
+    assert taken == list(range(rows.given))
+    scratch = [rows.scratch_row(name) for name in rows.scratch]
+    assert scratch == [rows.given, rows.given + 1]
+    assert rows.total == rows.given + 2
+    assert (rows.state, rows.kept) == (rows.predicted, rows.plot)
+
+
+def test_outputs_have_rows_of_their_own():
+    rows = Rows(2, 0)
+    firsts = [rows.output(name) for name in OUTPUTS]
+    assert len(set(firsts)) == len(OUTPUTS)
+    assert rows.output("gamma") == rows.gains + 2
+    assert max(firsts) < rows.kept
+
+
+def test_a_row_that_was_not_named_is_refused():
+    with pytest.raises(ValueError, match="not in tuple"):
+        Rows(1, 0, scratch=("ratio",)).scratch_row("exponent")
