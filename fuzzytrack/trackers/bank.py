@@ -24,7 +24,7 @@ __all__ = ["SELECTIONS", "ParallelBank"]
 
 SELECTIONS = ("soft", "best", "last", "hindsight")
 
-#: Bound of the scores: the difference of two must not become NaN.
+#: Bound of the scores, so that the difference of two is never NaN.
 _WORST = 1e300
 
 
@@ -46,8 +46,8 @@ class ParallelBank(LaneTracker):
         ``soft`` averages the members with weights exp(-J/2), J = forget·J + e²/(2σ²); it needs the
         standard deviation of the plots. ``best`` takes the member with the least J = forget·J + e².
         ``last`` takes the one that predicted the last plot best. ``hindsight`` takes, as published,
-        the one whose prediction turns out nearest to the plot: it is not causal, can only `run`,
-        and its innovations say nothing of its errors.
+        the one whose prediction is nearest to the plot that it predicts: so it is not causal, can
+        only `run`, and its innovations are no measure of its errors.
     forget : float
         What is left of a score after a plot, 0 <= forget <= 1; ``last`` and ``hindsight`` do not
         use it.
@@ -60,10 +60,10 @@ class ParallelBank(LaneTracker):
     Notes
     -----
     Al-Wagih & Abdulla, M5, Algorithm 3. The authors give no gains; ten from 0.1 to 0.999 are a
-    reading that fits their tables. All members start from the first two plots, where the score is
-    0; of equal members the one with the lowest α counts. Position, velocity and gains are those of
-    the members with the scores after the plot, so that the next prediction is x + v·T, as ever. A
-    missed plot leaves the scores as they are.
+    reading that fits their tables. All members start from the first two plots, with a score of 0;
+    of members with equal scores the one with the lowest α is taken. Position, velocity and gains
+    come from the scores after the plot, so that the next prediction is x + v·T, as in other
+    trackers. A missed plot does not change the scores.
 
     Examples
     --------
@@ -116,7 +116,7 @@ class ParallelBank(LaneTracker):
 
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
-        """Whether plots need a standard deviation: to be weighed."""
+        """Whether plots need a standard deviation: only where members are averaged."""
         return self.selection == "soft"
 
     @property

@@ -39,9 +39,9 @@ class InteractingModels(LaneTracker):
     """Two Kalman filters, for a quiet and for a maneuvering target, and the odds between them.
 
     The quiet model is `fuzzytrack.schedulers.KalmanCV`, the maneuvering one the same with more
-    noise, or `fuzzytrack.schedulers.KalmanCA`. From step to step the target keeps to a model with a
-    given probability. Each filter starts a step from a mixture of both estimates, and each plot
-    shifts the odds to the filter that foresaw it better. Estimates are means over the models.
+    noise, or `fuzzytrack.schedulers.KalmanCA`. From step to step the target keeps its model with a
+    given probability. Each filter starts a step from a mixture of both estimates. Each plot raises
+    the probability of the model that predicted it better. Estimates are means over the models.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ class InteractingModels(LaneTracker):
         Standard deviation of the acceleration of a quiet target (m/s²), drawn anew for each step,
         >= 0.
     maneuver_sigma : float
-        The same of a maneuvering one; with `maneuver` "ca" of the change of its acceleration at a
-        step (m/s²). > 0.
+        The same of a maneuvering target, > 0; with `maneuver` "ca" that of the change of its
+        acceleration at a step (m/s²).
     quiet_stay, maneuver_stay : float
         Probability, 0 to 1, that a target keeps to its model for a step, however long the step.
     maneuver : {"ca", "cv"}
@@ -61,14 +61,14 @@ class InteractingModels(LaneTracker):
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0. Unless given, each plot brings its own.
     velocity_sigma : float, optional
-        Standard deviation of a new track's velocity (m/s), > 0, about 0. Unless given, nothing is
-        presumed of the velocity: it comes from the first two plots.
+        Standard deviation of a new track's velocity (m/s), > 0, with mean 0. Unless given, the
+        velocity comes from the first two plots alone.
     acceleration_sigma : float, optional
-        Standard deviation of a new track's acceleration (m/s²) if it maneuvers, >= 0, about 0; that
-        of one step, `maneuver_sigma`, unless given. Only with `maneuver` "ca".
+        Standard deviation of a new track's acceleration (m/s²) if it maneuvers, >= 0, with mean 0;
+        `maneuver_sigma` unless given. Only with `maneuver` "ca".
     maneuver_start : float, optional
-        Probability, 0 to 1, that a new track maneuvers; the one in the long run unless given, and
-        ½ where there is none.
+        Probability, 0 to 1, that a new track maneuvers; unless given, the stationary probability of
+        the two models, or ½ if both of them are kept forever.
 
     Raises
     ------
@@ -78,23 +78,23 @@ class InteractingModels(LaneTracker):
     Notes
     -----
     Bar-Shalom, Li & Kirubarajan (2001), section 11.6.6. At a missed plot the models mix and
-    coast, and the probabilities go on as the chain says. Irregular times and a noise that varies
-    from plot to plot are followed exactly; Joseph form. Each axis has its own covariance: the
-    correlation that mixing joint axes would bring between them is left out. Models neither mix nor
-    are compared before velocity is known. No plot takes a probability below 1e-12, unless a new
-    track's are 0 and 1.
+    coast, and the probabilities change by the transitions between the models only. Irregular times
+    and a noise that varies from plot to plot are exact. Covariances are in Joseph form, one for
+    each axis: the correlation between joint axes that mixing would cause is neglected. Before
+    velocity is known, the models are neither mixed nor compared. No plot makes a probability less
+    than 1e-12, unless those of a new track are 0 and 1.
 
-    Next to a constant acceleration, the quiet model has acceleration 0 with variance 0: both are
-    mixed into the maneuvering model, and what is mixed into the quiet one of acceleration is
-    dropped by its prediction.
+    With `maneuver` "ca" the acceleration of the quiet model is 0 with variance 0. This is mixed
+    into the maneuvering model; an acceleration that mixing gives to the quiet model is set to 0 by
+    its prediction.
 
     The gains of a result are means over the models with the probabilities after the plot, and over
-    axes if joint: α = Σμ K₁, β = Σμ K₂T, γ = 2 Σμ K₃T². They show how the tracker responded; since
-    the models differ in their innovations, the recursion of `fuzzytrack.AlphaBetaTracker` with
-    these gains is not quite the same track.
+    axes if joint: α = Σμ K₁, β = Σμ K₂T, γ = 2 Σμ K₃T². They describe the response of the tracker.
+    An `fuzzytrack.AlphaBetaTracker` with these gains gives a somewhat different track, since each
+    model has an innovation of its own.
 
-    The memory of a lane is the probabilities of the quiet and the maneuvering model, and, axis by
-    axis, for either model (x, v, a, P₁₁, P₁₂, P₁₃, P₂₂, P₂₃, P₃₃).
+    The memory of a lane holds the probabilities of the quiet and of the maneuvering model and then,
+    axis by axis, (x, v, a, P₁₁, P₁₂, P₁₃, P₂₂, P₂₃, P₃₃) of the one and of the other.
 
     Examples
     --------

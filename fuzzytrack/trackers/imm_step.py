@@ -26,13 +26,13 @@ Model = tuple[float, float, float, float, float, float, float, float, float]
 #: The memory: two probabilities, then for each axis the quiet model and the maneuvering one.
 PROBABILITIES, MODEL = 2, 9
 
-# What a plot may say of the models: exp(±300) times 1e±50 leaves room for the probabilities.
+# Bounds of the likelihood ratio: exp(±300)·1e±50 times a probability neither over- nor underflows.
 _EXPONENT, _RATIO = 300.0, 1e100
 
 
-# What one pass through the lanes leaves to the next: the share of the other model in the mixture
-# from which each starts; and, as the likelihood of the maneuvering model over that of the quiet
-# one, its square under a root and its exponent.
+# Intermediate results from one pass through the lanes to the next: for each model the share of the
+# other one in the mixture from which it starts; and the likelihood of the maneuvering model over
+# that of the quiet one, which is sqrt(ratio)·exp(exponent).
 _SCRATCH = ("quiet_share", "maneuver_share", "ratio", "exponent")
 
 
