@@ -62,7 +62,7 @@ def parameters_of(
     """Parameters of a factory that can be given by name."""
     try:
         signature = inspect.signature(factory, eval_str=True)
-    except NameError:  # annotations that only a type checker sees
+    except Exception:  # annotations that only a type checker can read
         signature = inspect.signature(factory)
     named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     return {k: p for k, p in signature.parameters.items() if p.kind in named and k != without}
