@@ -33,7 +33,7 @@ COMMANDS = {
     "surface": ("surface:surface", "Draw the control surface of a rule base."),
     "certify": (
         "certify:certify",
-        "Prove that the error shrinks for any order of gains, or show one that makes it grow.",
+        "Prove that the error shrinks for any order of gains, or show an order that makes it grow.",
     ),
     "gains": ("gains:gains", "Show what fixed gains do: stability, poles, noise and lag."),
     "trackers": (

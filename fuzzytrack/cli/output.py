@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from fuzzytrack.io.files import whole_file
 from fuzzytrack.json_types import plain
 from fuzzytrack.tasks import Progress
 
@@ -112,6 +111,8 @@ def print_json(value: Any) -> None:
 
 def write_json(path: Path, value: Any, indent: int = 2) -> None:
     """Write a value as JSON, with null for NaN and infinity; the file appears whole."""
+    from fuzzytrack.io.files import whole_file
+
     text = json.dumps(plain(value), indent=indent, ensure_ascii=False, allow_nan=False)
     with whole_file(path) as draft:
         draft.write_text(text + "\n", encoding="utf-8")
