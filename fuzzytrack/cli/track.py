@@ -8,10 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
 import typer
 
-from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture
@@ -19,13 +17,12 @@ from fuzzytrack.cli.recording import axes_named, read_recording
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.recording import Recording
-from fuzzytrack.recordings.ragged import run_tracks
+from fuzzytrack.recordings.ragged import join_tracks, run_tracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_writer import write_tracks
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.result import TrackResult
-from fuzzytrack.trackers.state import Gains
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -85,7 +82,7 @@ def track(
     """Track the plots of a file, or of a folder of files in order of their names.
 
     Times are in seconds; an empty cell or nan is a missed plot. A folder, or a file of more than
-    100 MB, is tracked in pieces: files larger than memory will do.
+    100 MB, is tracked in pieces, and may be larger than memory.
     """
     if sigma is not None and not 0 < sigma < math.inf:
         raise ValueError(f"--sigma must be > 0, got {sigma:g}")
@@ -216,17 +213,4 @@ def _row(totals: Totals) -> list[str]:
 def _draw(recording: Recording, results: Sequence[TrackResult]) -> Figure:
     from fuzzytrack.plotting import plot_track
 
-    return plot_track(_in_line(results), axes_names=recording.axes, unit="")[0]
-
-
-def _in_line(results: Sequence[TrackResult]) -> TrackResult:
-    """All tracks one after the other, with a gap between them, so that no line joins two."""
-
-    def joined(parts: Sequence[Array]) -> Array:
-        gap = np.full((1, *parts[0].shape[1:]), np.nan)
-        return np.concatenate([piece for part in parts for piece in (part, gap)][:-1])
-
-    gains = [joined([getattr(r.gains, n) for r in results]) for n in ("alpha", "beta", "gamma")]
-    names = ("time", "measured", "predicted", "filtered", "velocity", "acceleration", "innovation")
-    values = {name: joined([getattr(r, name) for r in results]) for name in names}
-    return TrackResult(**values, gains=Gains(*gains), state=None)
+    return plot_track(join_tracks(results), axes_names=recording.axes, unit="")[0]

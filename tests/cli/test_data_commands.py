@@ -97,6 +97,7 @@ BAD_FILES = {
     "empty": ("", "is empty"),
     "header only": ("t,x\n", "holds no rows"),
     "columns": ("time,a,b\n0,0,0\n", "--axes; there are time, a, b"),
+    "quoted column": ("time,`a`\n0,0\n", "--axes; there are time, `a`"),
 }
 
 
