@@ -120,6 +120,18 @@ def test_leftovers_are_removed(folder):
     assert folder.clear() == (0, 0)
 
 
+def test_a_full_disk_leaves_no_draft(folder, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.warns(CacheWarning, match="kernels: No space left on device; set FUZZYTRACK_CACHE"):
+        folder.write("a", b"code")
+    assert list(folder.path.iterdir()) == []
+    monkeypatch.setattr("tempfile.TemporaryFile", full)
+    assert folder.problem() == f"{folder.path}: No space left on device"
+
+
 def test_several_may_write_and_remove_at_once(folder, monkeypatch):
     monkeypatch.setattr(cache, "MOST_FILES", 2)
 
