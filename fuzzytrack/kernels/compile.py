@@ -93,6 +93,15 @@ class _Content:
 
     Equal to another one if both functions have the same content; if it cannot be determined, only
     to itself.
+
+    Attributes
+    ----------
+    digest : str or None
+        Of the content and the type of number.
+    dtype : type
+    name : str
+        Part of the name of the compiled code.
+    function : function
     """
 
     digest: str | None
@@ -102,9 +111,9 @@ class _Content:
 
     @classmethod
     def of(cls, function: Any, dtype: type) -> _Content:
-        digest = fingerprint(function)
-        name = f"{np.dtype(dtype).char}{(digest or uuid.uuid4().hex)[:24]}"
-        return cls(digest, dtype, name, function)
+        digest, kind = fingerprint(function), np.dtype(dtype).char
+        name = f"{kind}{(digest or uuid.uuid4().hex)[:24]}"
+        return cls(None if digest is None else kind + digest, dtype, name, function)
 
 
 def _prepared_copy(content: _Content) -> FunctionType:

@@ -1,5 +1,6 @@
 """Compiled functions, and how another process finds their code again."""
 
+import ctypes
 import os
 import subprocess
 import sys
@@ -162,8 +163,6 @@ def test_a_constant_of_another_module_may_change_between_processes(folder, tmp_p
 
 
 def test_functions_called_by_address():
-    import ctypes
-
     def power(numbers, count):
         for i in range(count):
             numbers[i] = numbers[i] * numbers[i]
@@ -172,3 +171,17 @@ def test_functions_called_by_address():
     numbers = (ctypes.c_double * 3)(1.5, 2.0, 3.0)
     ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_ssize_t)(made.address)(numbers, 2)
     assert list(numbers) == [2.25, 4.0, 3.0]
+
+
+def test_code_for_another_type_of_number_is_other_code(folder):
+    """Also where the types of the arguments do not show it."""
+
+    def more(count):
+        return count + int(large)
+
+    large = 16_777_217.0
+    for dtype, expected in ((np.float64, 16_777_217), (np.float32, 16_777_216)) * 2:
+        made = entry_point(more, "ii", dtype)
+        function = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_ssize_t)(made.address)
+        assert function(3) == expected + 3
+    assert len(folder.files()) == 2
