@@ -219,7 +219,7 @@ def numpy_gains(scale: Scale) -> list[Row]:
     warm(scale, tracker, 2)
     works: dict[str, Callable[[], Any]] = {
         "ours": lambda: predictions(tracker, times, plots, alpha),
-        "numpy": lambda: handwritten.vectorised(times, plots, alpha, beta),
+        "numpy": lambda: handwritten.vectorized(times, plots, alpha, beta),
     }
     found = take_turns(works, 3 * scale.repeats)
     apart = difference(works["ours"](), works["numpy"]())

@@ -144,13 +144,13 @@ def scikit_fuzzy() -> Engine:
     return evaluate
 
 
-SAME = "The same sets, product and weighted centres"
+SAME = "The same sets, product and weighted centers"
 PEERS: dict[str, tuple[Callable[[], Engine], str]] = {
     "pyfuzzylite": (pyfuzzylite, SAME),
     "simpful": (simpful, SAME),
     "scikit-fuzzy": (
         scikit_fuzzy,
-        "Not the same: it has no weighted centres, so the centroid of sets cut off and joined by "
+        "Not the same: it has no weighted centers, so the centroid of sets cut off and joined by "
         "max on the rule base's grid of 41 points is taken",
     ),
 }

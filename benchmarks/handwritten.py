@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.lanes.layout import aligned
 
-__all__ = ["bare", "fixed", "fuzzy", "vectorised"]
+__all__ = ["bare", "fixed", "fuzzy", "vectorized"]
 
 Array = NDArray[np.float64]
 
@@ -97,7 +97,7 @@ def _relative(part, whole):
 
 @_inline
 def _fuzzy_terms(e, change, before):
-    """Corrections of position and of velocity times T, and the normalised error."""
+    """Corrections of position and of velocity times T, and the normalized error."""
     error = _relative(e, change)
     omega0, zeta = _rules(error, _relative(error - before, before))
     # The gains are 4ζω₀/(1 + 2ζω₀ + ω₀²) and 4ω₀²/(...): one division serves both.
@@ -266,7 +266,7 @@ def fuzzy(times: Array, plots: Array) -> Array:
     return predicted
 
 
-def vectorised(times: Array, plots: Array, alpha: Array, beta: Array) -> Array:
+def vectorized(times: Array, plots: Array, alpha: Array, beta: Array) -> Array:
     """Predictions in NumPy with gains for each track and axis, started by one plot.
 
     Plots have the shape (n_steps, n_tracks, n_axes); none of the first may be missed.

@@ -8,7 +8,7 @@ from typing import Any
 __all__ = ["draw"]
 
 Curve = list[dict[str, Any]]
-COLOURS = {"fixed gains": "#1f6fb4", "fuzzy exact": "#c8501e"}
+COLORS = {"fixed gains": "#1f6fb4", "fuzzy exact": "#c8501e"}
 
 
 def draw(figures: dict[str, Any], folder: Path) -> list[Path]:
@@ -27,9 +27,9 @@ def draw(figures: dict[str, Any], folder: Path) -> list[Path]:
         if not curve:
             continue
         figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
-        for tracker, colour in COLOURS.items():
+        for tracker, color in COLORS.items():
             points = [(p[key], p[tracker]) for p in curve if tracker in p]
-            axes.plot(*zip(*points, strict=True), "o-", color=colour, label=tracker)
+            axes.plot(*zip(*points, strict=True), "o-", color=color, label=tracker)
         axes.set(xlabel=label, ylabel="million updates a second", xscale=scale)
         if key == "threads":
             axes.set_xticks([p[key] for p in curve])

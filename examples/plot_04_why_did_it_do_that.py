@@ -22,8 +22,8 @@ result = ft.AlphaBetaTracker(ft.FuzzyScheduler(rules)).run(t, z)
 ft.plot_track(result, truth, axes_names=["distance"])
 
 # %%
-# The inputs of the rules are the innovation against the distance travelled, and the change of that
-# (the normalisation ``chan``). The first two plots only start the track.
+# The inputs of the rules are the innovation against the distance traveled, and the change of that
+# (the normalization ``chan``). The first two plots only start the track.
 innovation, change = result.innovation[2:], np.diff(z)[1:]
 error = innovation / np.maximum(abs(innovation), abs(change))
 before = np.concatenate([[0.0], error[:-1]])

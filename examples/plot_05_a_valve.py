@@ -20,7 +20,7 @@ ft.plot_memberships(valve)
 
 # %%
 # All rules together are one relational matrix between flow and opening, with a spike for each rule.
-# A flow of 1.25 picks the column under the dashed line: the fuzzy output. Its centre of gravity is
+# A flow of 1.25 picks the column under the dashed line: the fuzzy output. Its center of gravity is
 # the answer.
 plot_relation(valve, at=1.25)
 
@@ -30,7 +30,7 @@ ft.plot_surface(valve)
 
 # %%
 # A rule may be trusted by half. With a confidence of 0.5 the spike of the first rule (flow zero,
-# opening large) is only half as high, so its neighbour gains weight where both speak.
+# opening large) is only half as high, so its neighbor gains weight where both speak.
 doubted = ft.load_rulebase("valve-confidence")
 print(doubted.rules[0])
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")

@@ -21,7 +21,7 @@ plot_circle_cost(rate, dt, radius)
 
 # %%
 # The more the noise weighs, the smaller the gains; up to a weight at which it is cheaper to give
-# the circle up and to stay at its centre. There the thick line ends.
+# the circle up and to stay at its center. There the thick line ends.
 plot_circle_gains(rate, dt, radius, kappas=10 ** np.arange(-2, 3.5, 0.25))
 
 # %%

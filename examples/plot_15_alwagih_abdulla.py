@@ -34,7 +34,7 @@ for row in found.rows:
         print(f"{row.quantity:16}  published {row.published:5.1f}  ours {row.ours:5.1f}")
 
 # %%
-# Root mean square errors of the five methods, in white noise and in coloured noise.
+# Root mean square errors of the five methods, in white noise and in colored noise.
 found.pictures["fig7-white"]()
 
 # %%
@@ -45,9 +45,7 @@ found.pictures["fig8-coloured"]()
 # is about as good as the best fixed gain, which nobody knows beforehand.
 for name in ("M5", "M5 last", "M5 best", "M5 soft", "fixed α = 0.4", "plots"):
     white, coloured = (found.ours(f"{name}: Y, {noise} (m)") for noise in ("white", "coloured"))
-    print(
-        f"{name:14}  RMSE in Y {white:4.1f} m in white noise, {coloured:4.1f} m in coloured noise"
-    )
+    print(f"{name:14}  RMSE in Y {white:4.1f} m in white noise, {coloured:4.1f} m in colored noise")
 
 # %%
 # M4 is M1 until its window is full, after 82 plots.

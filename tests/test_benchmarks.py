@@ -146,7 +146,7 @@ def test_the_steady_step_alone_tracks():
     buffer, predicted = aligned(core.rows.total * BLOCK), aligned(BLOCK)
     steady = core.steady_code(False).address
     profile._go_round(steady, buffer, np.full(profile.ROUND * BLOCK, 8.0), predicted, 1)
-    # Position and velocity from 0 towards a plot at 8 that stays, one second a step.
+    # Position and velocity from 0 toward a plot at 8 that stays, one second a step.
     x = v = 0.0
     for _ in range(profile.ROUND):
         before = x + v

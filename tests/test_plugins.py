@@ -205,7 +205,7 @@ class Scripted(GainScheduler):
 
 @pytest.fixture
 def script(tmp_path):
-    """Write a script; what it registers as "scripted" is forgotten afterwards."""
+    """Write a script; what it registers as "scripted" is forgotten afterward."""
 
     def write(text, name="mine.py"):
         path = tmp_path / name

@@ -29,8 +29,8 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
 BLACK = "black"
 COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P")
-INK, GREY = "0.15", "0.55"
-# Perceptually uniform, readable in grey and with any color vision.
+INK, GRAY = "0.15", "0.55"
+# Perceptually uniform, readable in gray and with any color vision.
 COLORMAP = "viridis"
 PLAIN = FuncFormatter(lambda value, _: f"{value:.4g}")
 

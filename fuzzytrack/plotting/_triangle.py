@@ -28,7 +28,7 @@ def triangle(ax: Axes, limits: tuple[float, float] = (2.06, 4.12)) -> None:
 
 
 def graded(levels: Sequence[float] | Array) -> list[Any]:
-    """Colours from dark to light, short of the yellow that nobody can read on white."""
+    """Colors from dark to light, short of the yellow that nobody can read on white."""
     return list(colormaps[shared.COLORMAP](np.linspace(0.0, 0.82, len(levels))))
 
 

@@ -30,7 +30,7 @@ APART = 30.0
 POINTS = 400
 # Share of errors that a distribution shows of the worst tracker; outliers would squeeze the rest.
 SHOWN = 0.99
-# Metres beyond which positions are labelled in kilometres.
+# Meters beyond which positions are labeled in kilometers.
 FAR = 5000.0
 # Scans beyond which markers of every scan would run into each other.
 DENSE = 150
@@ -95,7 +95,7 @@ def plot_error_over_time(
             color = _look(number)["color"]
             plane.fill_between(steps, *limits[label], color=color, alpha=0.2, linewidth=0)
     if plots is not None:
-        plane.plot(steps, plots, color=shared.GREY, linewidth=1.2, label="plots", zorder=1)
+        plane.plot(steps, plots, color=shared.GRAY, linewidth=1.2, label="plots", zorder=1)
     _scale(plane, "y", [*curves.values()])
     if scored_from is not None and scored_from > steps[0]:
         plane.axvspan(steps[0], scored_from, color="0.94", linewidth=0, label="not scored")
@@ -125,7 +125,7 @@ def plot_trajectories(
     predicted : mapping of str to array_like, shape (n_steps, n_axes)
         Predicted positions of each tracker (m), by label; hollow where there was no plot.
     unit : {"m", "km"}, optional
-        Unit to show; kilometres if the run spans more than 5 km unless given.
+        Unit to show; kilometers if the run spans more than 5 km unless given.
     axes_names : sequence of str, optional
         Names of the axes of space; x, y, z unless given.
     ax : Axes or sequence of Axes, optional
@@ -205,7 +205,7 @@ class _Run:
             marker="s",
             markersize=4.5,
             markerfacecolor="none",
-            color=shared.GREY,
+            color=shared.GRAY,
             label="plots",
             zorder=2,
         )
@@ -326,7 +326,7 @@ def plot_consistency(
     what: str = "NIS, mean over runs",
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Normalised squared errors over time, one line a tracker, and where they should lie.
+    """Normalized squared errors over time, one line a tracker, and where they should lie.
 
     Parameters
     ----------
@@ -368,7 +368,7 @@ def plot_consistency(
     if limits:
         plane.fill_between(steps, *limits, color="0.85", linewidth=0, label="consistent", zorder=1)
     if expected is not None:
-        plane.axhline(expected, color=shared.GREY, linewidth=1.0, zorder=1)
+        plane.axhline(expected, color=shared.GRAY, linewidth=1.0, zorder=1)
     for number, (label, curve) in enumerate(curves.items()):
         plane.plot(steps, curve, label=label, linewidth=1.4, **_look(number))
     _scale(plane, "y", [*curves.values(), *limits])
@@ -377,7 +377,7 @@ def plot_consistency(
 
 
 def _look(number: int) -> dict[str, Any]:
-    """Colour and dashes of a tracker, by its place: the same in every picture."""
+    """Color and dashes of a tracker, by its place: the same in every picture."""
     return {
         "color": shared.COLORS[number % len(shared.COLORS)],
         "linestyle": STYLES[number % len(STYLES)],

@@ -183,7 +183,7 @@ def _references(ax: Axes, labels: bool = True) -> None:
     ax.plot(
         np.concatenate([alpha, alpha[::-1]]),
         np.concatenate([lower, upper[::-1]]),
-        color=shared.GREY,
+        color=shared.GRAY,
         linestyle="--",
         linewidth=1.1,
         label=named("critical damping"),
@@ -194,7 +194,7 @@ def _references(ax: Axes, labels: bool = True) -> None:
     ax.plot(
         alpha,
         alpha**2 / (2.0 - alpha),
-        color=shared.GREY,
+        color=shared.GRAY,
         linestyle=":",
         linewidth=1.6,
         label=named("Benedict–Bordner"),

@@ -161,7 +161,7 @@ def _rising_root(function: Any, level: float, top: Array) -> Array:
 def plot_noise_against_lag(
     mark: dict[str, tuple[float, float]] | None = None, *, ax: Axes | None = None
 ) -> tuple[Figure, Axes]:
-    """What every choice of gains trades: noise of the prediction against lag in a manoeuvre.
+    """What every choice of gains trades: noise of the prediction against lag in a maneuver.
 
     Parameters
     ----------

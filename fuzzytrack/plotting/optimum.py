@@ -217,7 +217,7 @@ def plot_motion_gains(
     if order == 2:
         figure, grid = shared.panels("axes", axes, 1, columns=1, size=(6.4, 5.8))
         triangle(grid[0])
-        grid[0].plot(*rule, color=shared.GREY, ls="-.", lw=1.5, label="no acceleration (Eq. 2.98)")
+        grid[0].plot(*rule, color=shared.GRAY, ls="-.", lw=1.5, label="no acceleration (Eq. 2.98)")
     else:
         figure, grid = shared.panels("axes", axes, 3, columns=3, size=(4.2, 4.2))
     for number, speed in enumerate(speeds):

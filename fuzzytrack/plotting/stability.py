@@ -204,7 +204,7 @@ def _image(mesh: Iterable[Array], space: str) -> Mesh:
 
 
 def _surfaces(which: str) -> list[tuple[str, str, Mesh]]:
-    """Label, colour, and mesh in a, b, c of each surface."""
+    """Label, color, and mesh in a, b, c of each surface."""
     share, third = np.meshgrid(np.linspace(0.0, 1.0, 41), np.linspace(-1.0, 1.0, 41))
     zero = np.zeros_like(share)
     if which == "bounds":

@@ -112,7 +112,7 @@ class _Shown:
             marker="s",
             markersize=4.5,
             markerfacecolor="none",
-            color=shared.GREY,
+            color=shared.GRAY,
             label="measured",
             zorder=1,
         )

@@ -28,7 +28,7 @@ class TrackCovariance:
     innovation_variance : ndarray, shape (n_steps, ...batch, n_axes)
         S (m²), shaped as the plots; NaN where there is no innovation or nothing is known of it.
     nis : ndarray, shape (n_steps, ...batch)
-        Normalised innovation squared, the sum of e²/S over the axes that have one; NaN where none
+        Normalized innovation squared, the sum of e²/S over the axes that have one; NaN where none
         has. If model and noise are right, its mean is `axes`. Plots of one axis without an axis of
         space, shape (n_steps,), have it in that shape.
     axes : ndarray of int, shape (n_steps, ...batch)
@@ -67,7 +67,7 @@ def track_covariance(
         use of it.
     acceleration_sigma : float, optional
         Standard deviation of a new track's acceleration (m/s²), >= 0. Needed by a tracker with γ;
-        given for one without, the target is modelled with acceleration all the same.
+        given for one without, the target is modeled with acceleration all the same.
 
     Returns
     -------

@@ -17,7 +17,7 @@ ALGEBRAS = tuple(itertools.product(("product", "min"), ("sum", "max")))
 
 
 def triangles(names, centers, *, plateau=False):
-    """Triangles from centre to centre, half ones (or plateaus) at the ends: they add up to one."""
+    """Triangles from center to center, half ones (or plateaus) at the ends: they add up to one."""
     sets = []
     for k, (name, center) in enumerate(zip(names, centers, strict=True)):
         left = centers[k - 1] if k else center
@@ -62,7 +62,7 @@ def table_base(table, x, y, output, operators=None, name="table"):
 
 
 def asymmetric_base(conjunction="product", disjunction="sum", defuzzification="centroid", seed=7):
-    """Random 7x7 base with nothing symmetric: ranges, grids, centres, table, confidences.
+    """Random 7x7 base with nothing symmetric: ranges, grids, centers, table, confidences.
 
     A quarter of the rules have a confidence below one and a quarter conclude two sets of one
     output; two more rules name one input only.

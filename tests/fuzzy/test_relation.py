@@ -14,7 +14,7 @@ from fuzzytrack.fuzzy.rulebase import DEFUZZIFICATIONS, Operators, RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
-FACTORISING = [a for a in ALGEBRAS if a != ("min", "sum")]
+FACTORIZING = [a for a in ALGEBRAS if a != ("min", "sum")]
 FUZZY_INPUTS = [
     Fuzzification("gaussian", {"x": 0.4, "y": 1.3}),
     Fuzzification("triangular", {"x": 0.9, "y": 2.1}),
@@ -146,7 +146,7 @@ def test_relation_is_the_definition(conjunction, disjunction):
 
 @pytest.mark.parametrize(
     ("conjunction", "disjunction", "method"),
-    [(*a, "relation") for a in ALGEBRAS] + [(*a, "exact") for a in FACTORISING],
+    [(*a, "relation") for a in ALGEBRAS] + [(*a, "exact") for a in FACTORIZING],
 )
 @pytest.mark.parametrize("fuzzification", FUZZY_INPUTS, ids=lambda f: f.shape)
 def test_fuzzy_inputs_are_composed_by_definition(conjunction, disjunction, fuzzification, method):
@@ -204,8 +204,8 @@ def test_relation_reads_the_nearest_grid_point():
 
 
 @pytest.mark.parametrize("fuzzification", FUZZY_INPUTS, ids=lambda f: f.shape)
-@pytest.mark.parametrize(("conjunction", "disjunction"), FACTORISING)
-def test_factorised_composition_on_the_asymmetric_base(conjunction, disjunction, fuzzification):
+@pytest.mark.parametrize(("conjunction", "disjunction"), FACTORIZING)
+def test_factorized_composition_on_the_asymmetric_base(conjunction, disjunction, fuzzification):
     base = asymmetric_base(conjunction, disjunction)
     fuzzification = Fuzzification(fuzzification.shape, {"e": 0.08, "d": 0.35})
     points = random_points(base, 40)
@@ -219,7 +219,7 @@ def test_factorised_composition_on_the_asymmetric_base(conjunction, disjunction,
 
 
 @pytest.mark.parametrize("method", ["exact", "table"])
-def test_min_and_sum_do_not_factorise(method):
+def test_min_and_sum_do_not_factorize(method):
     base = asymmetric_base("min", "sum")
     with pytest.raises(ValueError, match=r"method: .*min and sum .*method='relation'"):
         FuzzySystem(base, method, fuzzification=Fuzzification("gaussian", 0.5))

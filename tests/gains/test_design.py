@@ -79,7 +79,7 @@ def test_known_gains_of_order_two(index, alpha, beta, velocity_variance):
     assert beta * (2 * alpha - beta) / (2 * (1 - alpha)) == pytest.approx(after[1, 1], rel=1e-8)
     if velocity_variance is not None:
         assert after[1, 1] == pytest.approx(velocity_variance, abs=6e-11)
-    # Variance of the innovation, and the part of it that the state before the manoeuvre has.
+    # Variance of the innovation, and the part of it that the state before the maneuver has.
     assert before[0, 0] + 1 == pytest.approx(1 / (1 - alpha), rel=1e-9)
     carried = before[0, 0] - index**2 / 4
     assert carried == pytest.approx(alpha / (1 - alpha) - index**2 / 4, rel=1e-7)

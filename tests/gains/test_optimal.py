@@ -112,7 +112,7 @@ def test_no_other_filter_with_gamma_costs_less(velocity, acceleration):
 
 @pytest.mark.parametrize(("rule", "cost"), CLOSED.values(), ids=CLOSED)
 @pytest.mark.parametrize("index", [0.02, 0.3, 3.0, 30.0])
-def test_numerical_minimisation_finds_the_closed_form(rule, cost, index):
+def test_numerical_minimization_finds_the_closed_form(rule, cost, index):
     def in_w(logarithms):
         omega, damping = np.exp(logarithms)  # 2ζω₀ is `damping`
         d = 1 + damping + omega**2

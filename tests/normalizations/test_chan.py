@@ -11,7 +11,7 @@ from fuzzytrack.normalizations.chan import (
     relative_signed,
 )
 
-metres = st.floats(-1e6, 1e6)
+meters = st.floats(-1e6, 1e6)
 unit = st.floats(-1, 1)
 
 
@@ -49,7 +49,7 @@ def test_chan_error_rate(now, before, expected):
     assert rate == pytest.approx(expected)
 
 
-@given(metres, metres, unit)
+@given(meters, meters, unit)
 def test_chan_is_odd_bounded_and_keeps_signs(error, moved, before):
     (e, rate), memory = signals(Chan(), error, moved, (before,))
     assert -1 <= e <= 1
@@ -61,7 +61,7 @@ def test_chan_is_odd_bounded_and_keeps_signs(error, moved, before):
     assert memory == (e,)
 
 
-@given(metres, metres)
+@given(meters, meters)
 def test_chan_does_not_depend_on_the_direction_of_travel(error, moved):
     assert relative(error, moved) == relative(error, -moved)
 
@@ -77,7 +77,7 @@ def test_the_signed_form_turns_with_the_direction_of_travel():
         assert rate == pytest.approx(expected)
 
 
-@given(st.lists(st.tuples(metres, metres, unit), min_size=1, max_size=4))
+@given(st.lists(st.tuples(meters, meters, unit), min_size=1, max_size=4))
 def test_chan_magnitude_is_the_root_mean_square_of_chan(axes):
     errors, moves, before = zip(*axes, strict=True)
     alone = [signals(Chan(), e, d, (b,))[0] for e, d, b in axes]
@@ -90,7 +90,7 @@ def test_chan_magnitude_is_the_root_mean_square_of_chan(axes):
     assert ChanMagnitude().initial_memory(n) == (0.0,) * n
 
 
-def test_registered_normalisations():
+def test_registered_normalizations():
     names = {"chan", "chan-signed", "chan-magnitude"}
     names |= {"predicted", "scale", "smoothed", "smoothed-magnitude"}
     assert names <= set(normalizations.names())

@@ -11,7 +11,7 @@ from fuzzytrack.gains import noise_ratio
 from fuzzytrack.normalizations import Predicted, Scale, Smoothed, SmoothedMagnitude
 from fuzzytrack.schedulers import GainScheduler
 
-metres = st.floats(-1e6, 1e6)
+meters = st.floats(-1e6, 1e6)
 unit = st.floats(-1, 1)
 
 
@@ -37,7 +37,7 @@ def test_smoothed_is_a_weighted_mean_of_scaled_innovations(plots, rho):
     assert memory == (mean,)
 
 
-@given(st.lists(st.tuples(metres, st.floats(0.1, 1e3), unit), min_size=1, max_size=4))
+@given(st.lists(st.tuples(meters, st.floats(0.1, 1e3), unit), min_size=1, max_size=4))
 def test_smoothed_magnitude_is_the_root_mean_square_of_smoothed(axes):
     innovations, sigmas, before = zip(*axes, strict=True)
     alone = [signals(Smoothed(), e, 1.0, (b,), s)[0] for e, s, b in axes]
@@ -184,7 +184,7 @@ def test_on_a_straight_run_the_signal_has_unit_variance():
 
 
 @pytest.mark.parametrize("opening", ["", ", opening: growing-memory"])
-def test_the_gains_that_were_chosen_come_back_to_the_normalisation(opening):
+def test_the_gains_that_were_chosen_come_back_to_the_normalization(opening):
     rules = loads_rulebase(RULES.replace("NAME", "predicted" + opening))
     _, dts, sigmas = record()
     plots = 5.0 * np.cumsum(dts) ** 1.3 + np.random.default_rng(4).normal(0, 9, 60)
@@ -215,7 +215,7 @@ def test_predicted_gains_less_after_missed_plots():
     assert 0 < late < 0.8 * full
 
 
-def test_only_a_normalisation_with_feedback_has_one():
+def test_only_a_normalization_with_feedback_has_one():
     assert Scale().feedback(1) is None
     assert not Scale().sees_every_step
     on_scale = FuzzyScheduler(loads_rulebase(RULES.replace("NAME", "scale")))

@@ -164,12 +164,12 @@ REGION = {
 
 @pytest.mark.parametrize(("table", "engine"), REGION)
 def test_region(found, table, engine):
-    *extremes, centre = REGION[table, engine]
+    *extremes, center = REGION[table, engine]
     for output, pair in zip(("stiffness", "damping", "α", "β"), extremes, strict=True):
         for end, value in zip(("least", "largest"), pair, strict=True):
             ours = found.ours(f"{engine}: {end} {output}", table)
             assert ours == pytest.approx(value, abs=6e-4)
-    for output, value in zip("αβ", centre, strict=True):
+    for output, value in zip("αβ", center, strict=True):
         assert found.ours(f"{engine}: {output} at E = ΔE = 0", table) == pytest.approx(
             value, abs=6e-4
         )

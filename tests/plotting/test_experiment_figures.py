@@ -16,7 +16,7 @@ ONE = np.array([np.nan, 3.0, 4.0, 6.0])
 TWO = np.array([np.nan, 5.0, np.nan, 2.0])
 
 
-def labelled(ax):
+def labeled(ax):
     return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
 
 
@@ -33,7 +33,7 @@ def test_errors_over_time():
     _, ax = plot_error_over_time(
         TIME, {"one": ONE, "two": TWO}, bands, measured=[7, 7, 8, 7], scored_from=2.0, unit="km"
     )
-    lines = labelled(ax)
+    lines = labeled(ax)
     np.testing.assert_array_equal(drawn(lines["one"]), np.stack([TIME, ONE], axis=-1))
     np.testing.assert_array_equal(drawn(lines["two"])[:, 1], TWO)
     np.testing.assert_array_equal(drawn(lines["plots"])[:, 1], [7, 7, 8, 7])
@@ -72,7 +72,7 @@ def test_eight_trackers_look_different_and_the_same_in_every_picture():
         plot_trajectories(TIME, ONE[:, None], ONE[:, None], tracks)[1],
     ]
     looks = [
-        [(labelled(ax)[name].get_color(), labelled(ax)[name].get_linestyle()) for name in curves]
+        [(labeled(ax)[name].get_color(), labeled(ax)[name].get_linestyle()) for name in curves]
         for ax in pictures
     ]
     assert len(set(looks[0])) == 8
@@ -105,7 +105,7 @@ def run():
 def test_a_run_in_the_plane(run):
     truth, plots, tracks = run
     _, ax = plot_trajectories(TIME, truth, plots, tracks)
-    lines = labelled(ax)
+    lines = labeled(ax)
     np.testing.assert_array_equal(drawn(lines["true"]), truth)
     np.testing.assert_array_equal(drawn(lines["plots"]), plots)
     hollow = [x for x in ax.lines if x.get_markerfacecolor() == "white" and len(x.get_xdata())]
@@ -128,13 +128,13 @@ def test_no_word_of_coasting_where_no_plot_is_missed(run):
 
 
 @pytest.mark.parametrize(("unit", "size"), [(None, 1000.0), ("m", 1.0)])
-def test_far_runs_are_in_kilometres(run, unit, size):
+def test_far_runs_are_in_kilometers(run, unit, size):
     truth, plots, tracks = run
     _, ax = plot_trajectories(
         TIME, 200 * truth, plots, tracks, unit=unit, axes_names=["east", "north"]
     )
-    np.testing.assert_array_equal(drawn(labelled(ax)["true"]), 200 * truth / size)
-    np.testing.assert_array_equal(drawn(labelled(ax)["plots"]), plots / size)
+    np.testing.assert_array_equal(drawn(labeled(ax)["true"]), 200 * truth / size)
+    np.testing.assert_array_equal(drawn(labeled(ax)["plots"]), plots / size)
     assert ax.get_xlabel() == f"east ({unit or 'km'})"
 
 
@@ -144,7 +144,7 @@ def test_other_than_two_axes_are_over_time(n_axes):
     _, axes = plot_trajectories(TIME, truth, truth, {"one": truth + 0.5})
     for k, ax in enumerate(np.atleast_1d(axes)):
         np.testing.assert_array_equal(
-            drawn(labelled(ax)["one"]), np.stack([TIME, truth[:, k] + 0.5], axis=-1)
+            drawn(labeled(ax)["one"]), np.stack([TIME, truth[:, k] + 0.5], axis=-1)
         )
         assert ax.get_ylabel() == ("xyz"[k] if n_axes <= 3 else f"x{k + 1}") + " (m)"
     assert np.atleast_1d(axes)[-1].get_xlabel() == "time (s)"
@@ -154,13 +154,13 @@ def test_marks_of_many_scans_do_not_run_into_each_other():
     time = np.arange(400.0)
     track = time[:, None]
     _, ax = plot_trajectories(time, track, track, {"one": track})
-    assert labelled(ax)["one"].get_markevery() == []
+    assert labeled(ax)["one"].get_markevery() == []
 
 
 def test_distribution_of_errors():
     errors = np.array([[4.0, 1.0, np.nan], [3.0, np.inf, 2.0]])
     _, ax = plot_error_distribution({"one": errors}, marked=(0.5, 0.75))
-    line = labelled(ax)["one"]
+    line = labeled(ax)["one"]
     np.testing.assert_allclose(drawn(line), [[1, 25], [2, 50], [3, 75], [4, 100]])
     assert line.get_drawstyle() == "steps-post"
     (marks,) = [x for x in ax.lines if x.get_marker() == "o"]
@@ -171,7 +171,7 @@ def test_distribution_of_errors():
 def test_distribution_of_many_errors_has_few_points_all_on_the_curve():
     sample = np.random.default_rng(0).rayleigh(10.0, 50_000)
     _, ax = plot_error_distribution({"one": sample})
-    points = drawn(labelled(ax)["one"])
+    points = drawn(labeled(ax)["one"])
     assert len(points) <= 400
     share = np.searchsorted(np.sort(sample), points[:, 0], side="right") / len(sample)
     np.testing.assert_allclose(points[:, 1], 100 * share)

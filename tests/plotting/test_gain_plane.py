@@ -93,7 +93,7 @@ def test_box_of_three_gains_is_that_of_the_first_two():
     assert outline.max(axis=0) == pytest.approx([0.9, 0.6])
 
 
-def test_several_trackers_have_labels_and_colours(result):
+def test_several_trackers_have_labels_and_colors(result):
     _, ax = plot_gain_plane({"a": result, "b": result.gains, "c": gains((1, 1))})
     assert {"a", "b", "c"} <= set(lines(ax))
     styles = {(li.get_color(), li.get_marker()) for li in ax.lines if li.get_label() in "abc"}

@@ -24,7 +24,7 @@ def lines(ax):
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_pictures_are_whole_and_labelled(name):
+def test_pictures_are_whole_and_labeled(name):
     figure, axes = MAKERS[name]()
     assert isinstance(figure, Figure)
     assert plt.get_fignums() == [figure.number]

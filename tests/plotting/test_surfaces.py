@@ -214,9 +214,9 @@ def test_slice_is_the_column_and_its_crisp_value(valve):
     assert cut.get_xlabel() == "valve opening"
 
 
-def test_relation_of_weighted_centres_has_a_row_a_set(valve):
+def test_relation_of_weighted_centers_has_a_row_a_set(valve):
     base = RuleBase(
-        "centres",
+        "centers",
         valve.inputs,
         valve.outputs,
         valve.rules,

@@ -293,7 +293,7 @@ def test_a_failure_leaves_the_file_as_it_was(results, tmp_path, monkeypatch):
         write_report(tmp_path / "none" / "report.html", results)
 
 
-def test_pictures_name_every_tracker_and_keep_their_colours(results):
+def test_pictures_name_every_tracker_and_keep_their_colors(results):
     pictures = report_pictures.report_pictures(results)
     assert list(pictures) == list(report_pictures.CAPTIONS)
     colors = []

@@ -132,7 +132,7 @@ def test_the_place_of_a_wrong_number_is_its_own(rules):
     assert line[caught.value.location.column - 1 :] == "1.5}"
 
 
-def test_numbers_of_the_normalisation(rules):
+def test_numbers_of_the_normalization(rules):
     with_rho = changed(rules, "chan, gains: w-domain}", "smoothed, rho: 0.25, gains: w-domain}")
     assert ft.FuzzyScheduler(with_rho).normalization.rho == 0.25
     *_, memory = ft.FuzzyScheduler(with_rho).kernel(1)(8.0, 0.0, 1.0, 2.0, (1.0,))
@@ -182,7 +182,7 @@ def test_a_missing_key_is_shown_where_the_others_stand(rules):
     assert caught.value.location.file == "my.yaml"
 
 
-def test_a_number_that_a_normalisation_lacks(rules):
+def test_a_number_that_a_normalization_lacks(rules):
     @dataclass(frozen=True)
     class Limited(Chan):
         limit: float

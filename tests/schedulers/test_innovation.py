@@ -117,24 +117,24 @@ def simulate(scheduler, runs=400, start=2):
 
 
 @pytest.mark.parametrize(
-    ("scheduler", "mean", "manoeuvre", "quiet"),
+    ("scheduler", "mean", "maneuver", "quiet"),
     [
         (InnovationScheduler(), 113.3, 135.5, 101.8),
         (InnovationScheduler.as_published(), 110.5, 133.5, 103.3),
     ],
 )
-def test_errors_on_the_published_scenario(scheduler, mean, manoeuvre, quiet):
+def test_errors_on_the_published_scenario(scheduler, mean, maneuver, quiet):
     rmse, _ = simulate(scheduler)
     ours = [
         rmse[14:].mean(),
         np.r_[rmse[26:36], rmse[66:76]].mean(),
         np.r_[rmse[48:66], rmse[88:101]].mean(),
     ]
-    assert ours == pytest.approx([mean, manoeuvre, quiet], rel=0.025)
+    assert ours == pytest.approx([mean, maneuver, quiet], rel=0.025)
 
 
 def test_unit_process_noise_latches_up():
-    """25 s after the manoeuvre the gains of nearly all runs are still those of a manoeuvre."""
+    """25 s after the maneuver the gains of nearly all runs are still those of a maneuver."""
     _, alpha = simulate(InnovationScheduler.as_published(q_scale=1.0), runs=200)
     assert np.mean(alpha[60] > 0.8) == pytest.approx(0.93, abs=0.06)
     _, alpha = simulate(InnovationScheduler(), runs=200)

@@ -65,8 +65,8 @@ def test_turns(radius, along):
     headings = np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0]))
     way = 6.0 * t[1:-1] + along * t[1:-1] ** 2 / 2
     np.testing.assert_allclose(headings - 0.7, way / radius, atol=1e-5)
-    centre = np.array(PLACED["start"]) + radius * np.array([-math.sin(0.7), math.cos(0.7)])
-    np.testing.assert_allclose(np.hypot(*(position - centre).T), abs(radius))
+    center = np.array(PLACED["start"]) + radius * np.array([-math.sin(0.7), math.cos(0.7)])
+    np.testing.assert_allclose(np.hypot(*(position - center).T), abs(radius))
 
 
 def test_a_very_wide_turn_is_a_parabola():

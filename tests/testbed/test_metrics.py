@@ -155,7 +155,7 @@ def test_plots_themselves():
     assert len(squares) == len(counting(results)) - 2
 
 
-def test_normalised_position_error():
+def test_normalized_position_error():
     results = made()
     np.testing.assert_allclose(results.npe(4.0), results.rmse_per_scan() / 4)
     np.testing.assert_allclose(results.npe(4.0, "filtered"), results.rmse_per_scan("filtered") / 4)

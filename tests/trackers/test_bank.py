@@ -17,7 +17,7 @@ from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lane_tracker import runner
 
 WHITE_NOISE = PlotNoise((15.0, 23.0), WHITE, clean=2)
-COLOURED_NOISE = PlotNoise((19.0, 23.0), Noise(correlation=0.7), clean=2)
+COLORED_NOISE = PlotNoise((19.0, 23.0), Noise(correlation=0.7), clean=2)
 CAUSAL = [name for name in SELECTIONS if name != "hindsight"]
 
 
@@ -279,11 +279,11 @@ def errors_in_s3(bank, noise, native):
     ("selection", "noise", "expected", "tolerance"),
     [
         ("hindsight", WHITE_NOISE, (10.7, 18.0), (0.3, 0.5)),
-        ("hindsight", COLOURED_NOISE, (17.4, 21.7), (0.5, 0.6)),
+        ("hindsight", COLORED_NOISE, (17.4, 21.7), (0.5, 0.6)),
         ("last", WHITE_NOISE, (19.0, 29.4), (0.5, 0.8)),
         ("best", WHITE_NOISE, (9.1, 16.7), (0.4, 0.6)),
         ("soft", WHITE_NOISE, (9.6, 17.3), (0.4, 0.6)),
-        ("soft", COLOURED_NOISE, (19.4, 25.1), (0.5, 0.6)),
+        ("soft", COLORED_NOISE, (19.4, 25.1), (0.5, 0.6)),
     ],
 )
 def test_error_in_scenario_s3(selection, noise, expected, tolerance):

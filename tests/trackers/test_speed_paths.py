@@ -132,8 +132,8 @@ def test_what_was_not_kept_says_so():
     assert result.kept == ("filtered", "innovation")
     with pytest.raises(AttributeError, match=r"predicted was not kept; run with keep=\(\.\.\., 'p"):
         _ = result.predicted
-    with pytest.raises(AttributeError, match="no attribute 'colour'"):
-        _ = result.colour
+    with pytest.raises(AttributeError, match="no attribute 'color'"):
+        _ = result.color
     assert pickle.loads(pickle.dumps(result)).kept == result.kept
     assert repr(result) == "TrackResult(shape=(4, 2), kept=('filtered', 'innovation'))"
     assert FIXED.run(range(4), np.zeros(4)).kept == KEPT

@@ -152,12 +152,12 @@ def published_errors(tracker, noise, runs, native):
 
 
 WHITE_NOISE = PlotNoise((15.0, 23.0), clean=2)
-COLOURED_NOISE = PlotNoise((19.0, 23.0), Noise(correlation=0.7), clean=2)
+COLORED_NOISE = PlotNoise((19.0, 23.0), Noise(correlation=0.7), clean=2)
 
 
 @pytest.mark.parametrize(
     ("noise", "expected", "tolerance"),
-    [(WHITE_NOISE, (14.0, 272.4), (0.8, 1.0)), (COLOURED_NOISE, (13.4, 272.4), (0.8, 1.0))],
+    [(WHITE_NOISE, (14.0, 272.4), (0.8, 1.0)), (COLORED_NOISE, (13.4, 272.4), (0.8, 1.0))],
 )
 def test_a_window_over_most_of_the_track_fits_the_paper(noise, expected, tolerance):
     errors = published_errors(WindowSearch(80), noise, 500, native=True)
