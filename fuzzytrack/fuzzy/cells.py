@@ -1,4 +1,4 @@
-"""Cells of a rule table: what a rule concludes, in as few characters as a table has room for."""
+"""Cells of a rule table: the conclusions of a rule in a few characters."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class CellReader:
         return value
 
     def _split(self, node: Node, body: str, order: tuple[str, ...]) -> tuple[str, ...]:
-        """Set names of a word such as ``S-L``; a name may hold hyphens if one reading is left."""
+        """Set names of a word such as ``S-L``; names with hyphens must leave one way to read it."""
         variables = [self.outputs[name] for name in order]
         parts = body.split("-")
         readings = []
@@ -139,7 +139,7 @@ def _readings(parts: list[str], variables: list[Variable]) -> list[tuple[str, ..
 
 
 def _merged(consequents: Iterable[Consequent]) -> tuple[Consequent, ...]:
-    """Add the confidences of equal consequents, as ``[S-L@0.5, M-L@0.5]`` means L for certain."""
+    """Add the confidences of equal consequents: ``[S-L@0.5, M-L@0.5]`` gives L confidence 1."""
     shares: dict[tuple[str, str], list[float]] = {}
     for consequent in consequents:
         key = (consequent.output, consequent.set_name)

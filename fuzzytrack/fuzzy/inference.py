@@ -28,7 +28,7 @@ def output_grid(operators: Operators, output: Variable) -> tuple[Array, Array]:
     """Points on which an output is inferred, and the sets' grades there.
 
     Weighted centers (Eq. 3.13) are the centroid over a universe made of the sets' centers, each
-    belonging to its own set alone; so they need no inference of their own.
+    belonging to its own set alone; so the same inference serves them.
 
     Returns
     -------
@@ -42,12 +42,12 @@ def output_grid(operators: Operators, output: Variable) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class Conclusions:
-    """What the rules say of one output, as arrays over the consequents about it.
+    """Conclusions of the rules about one output, as arrays over its consequents.
 
     Attributes
     ----------
     rule, term : ndarray of int, shape (n_consequents,)
-        Index of the rule, and of the output set it calls.
+        Index of the rule, and of the output set that it concludes.
     confidence : ndarray, shape (n_consequents,)
     y, grades : ndarray
         The output's grid and the grades of its sets there; see `output_grid`.
@@ -81,7 +81,7 @@ class Conclusions:
 
 
 def conclusions(rulebase: RuleBase, output: Variable) -> Conclusions:
-    """Collect what the rules say of one output."""
+    """Collect the conclusions of the rules about one output."""
     rows = [
         (number, output.index(consequent.set_name), consequent.confidence)
         for number, rule in enumerate(rulebase.rules)

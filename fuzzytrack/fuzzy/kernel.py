@@ -32,8 +32,8 @@ def infer_function(system: FuzzySystem) -> Infer:
     Parameters
     ----------
     system : FuzzySystem
-        Its method decides what is written out: the live rules (``exact``), the crisp value of
-        every grid cell (``relation``), or the interpolation table (``table``).
+        Its method decides what is written out: the rules (``exact``), the crisp value of every
+        grid cell (``relation``), or the interpolation table (``table``).
 
     Returns
     -------
@@ -49,7 +49,9 @@ def infer_function(system: FuzzySystem) -> Infer:
     """
     writer = _Writer(system)
     if not system.fuzzification.is_singleton and system.method != "table":
-        raise ValueError("non-singleton inputs schedule gains with method='table' only")
+        raise ValueError(
+            "non-singleton inputs: only method='table' can be written as a scalar function"
+        )
     {"exact": writer.exact, "relation": writer.relation, "table": writer.table}[system.method]()
     return writer.function()
 

@@ -30,7 +30,7 @@ _SIGMAS = 37.0
 
 @dataclass(frozen=True)
 class Shape:
-    """What the engine knows of one membership shape.
+    """A membership shape: its parameters, their conditions and its formulas.
 
     Attributes
     ----------

@@ -179,7 +179,7 @@ def _expression(weights: Array, axis: int) -> str:
 
 
 def _sum(terms: list[str]) -> str:
-    """Sum of sums of halves: fewest additions then wait for one another."""
+    """Sum of two halves, each summed so: the fewest additions then depend on one another."""
     # None that starts with a minus, if it can be helped.
     terms = sorted(terms, key=lambda term: term.startswith("-"))
     if len(terms) < 3:

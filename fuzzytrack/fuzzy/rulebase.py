@@ -111,7 +111,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class TableLayout:
-    """That the rules are written as a table: columns and rows are inputs, cells name outputs."""
+    """Layout of rules in a table: columns and rows are inputs, cells name sets of outputs."""
 
     columns: str
     rows: str
@@ -278,7 +278,7 @@ class RuleBase:
         return _named(self.outputs, name, "output")
 
     def uncovered(self, name: str) -> Iterator[tuple[float, float]]:
-        """Stretches of an input, as (low, high), where every membership is zero."""
+        """Intervals of an input, as (low, high), where every membership is zero."""
         return self.input(name).uncovered()
 
 

@@ -1,4 +1,4 @@
-"""Rule bases to YAML: written so that the table reads like a table in print."""
+"""Rule bases to YAML, with tables laid out as in print."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""JSON Schema of rule-base files, made from the model, so that editors complete and explain."""
+"""JSON Schema of rule-base files, with which editors complete and check them."""
 
 from __future__ import annotations
 

@@ -164,7 +164,7 @@ class Variable:
         return self._index[set_name]
 
     def uncovered(self, set_names: Collection[str] | None = None) -> Iterator[tuple[float, float]]:
-        """Stretches of the universe, as (low, high), where every membership is zero.
+        """Intervals of the universe, as (low, high), where every membership is zero.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Theory of gains: pure functions over broadcasting arrays; they know nothing of fuzzy sets."""
+"""Theory of gains: pure functions over broadcasting arrays, without fuzzy sets."""
 
 from fuzzytrack.gains.abc_space import abc_preimages, from_abc, to_abc
 from fuzzytrack.gains.card import gain_card

@@ -1,4 +1,4 @@
-"""What fixed gains do, on one card: stability, poles, noise and lag."""
+"""A card of fixed gains: stability, poles, noise and lag."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ NEAR = 1e-3
 def gain_card(
     alpha: float, beta: float, gamma: float = 0.0, dt: float = 1.0, sigma: float | None = None
 ) -> dict[str, Any]:
-    """All that the theory says of fixed gains.
+    """Stability, poles, noise and lag of fixed gains.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ Triple = tuple[Array, Array, Array]
 
 
 def tracking_index(sigma_v: ArrayLike, sigma_w: ArrayLike, dt: ArrayLike) -> Array:
-    """Kalata's tracking index λ = σ_v T²/σ_w: how far a maneuver carries, against the noise.
+    """Kalata's tracking index λ = σ_v T²/σ_w: displacement by a maneuver over noise.
 
     Parameters
     ----------

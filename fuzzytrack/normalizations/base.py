@@ -1,4 +1,4 @@
-"""What a normalization is: from an innovation in meters to the inputs of a rule base."""
+"""The base class of normalizations, which make the inputs of a rule base, and their registry."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ def _draw(ax: Axes, variable: Variable, title: str) -> None:
         color = shared.COLORS[number % len(shared.COLORS)]
         ax.plot(x, grades, color=color, linewidth=1.8, label=fuzzy_set.name)
     shared.finish(ax)
-    # Over the stretches where sets are zero, which have the color of the last one.
+    # Over the intervals where sets are zero, which have the color of the last one.
     ax.spines["bottom"].set(linewidth=2.0, color="0.4", zorder=3)
     levels = _label_sets(ax, variable)
     shared.span_axis(ax, "x", low, high)

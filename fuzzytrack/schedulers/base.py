@@ -1,4 +1,4 @@
-"""What a gain scheduler is."""
+"""The base class of gain schedulers, and their registry."""
 
 from __future__ import annotations
 
@@ -96,9 +96,9 @@ class GainScheduler(ABC):
     def prediction_variance(self, memory: Any, dt: Any) -> Any:
         """Variance of the position predicted over a time (m²); NaN unless overridden.
 
-        For schedulers that keep a covariance: what `fuzzytrack.Tracker.predict` tells of it. It is
-        asked for many tracks at once, with arrays in place of numbers, so it has arithmetic and
-        `numpy.where` in it, and no ``if``.
+        For schedulers that keep a covariance; `fuzzytrack.Tracker.predict` uses it. It is called
+        for many tracks at once, with arrays in place of numbers, so it is written with arithmetic
+        and `numpy.where`, without ``if``.
 
         Parameters
         ----------
