@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fuzzytrack.version import __version__
 
 # For type checkers and editors; at run time a name is imported when it is first used, so that
-# `import fuzzytrack` costs next to nothing, and a program pays for what it uses.
+# `import fuzzytrack` is fast, and only what a program uses is loaded.
 if TYPE_CHECKING:
     from fuzzytrack.errors import (
         CacheWarning,

@@ -1,4 +1,4 @@
-"""Errors and warnings that users meet; all are ``ValueError`` or ``UserWarning`` underneath."""
+"""Errors and warnings of the package, derived from ``ValueError`` and ``UserWarning``."""
 
 from __future__ import annotations
 

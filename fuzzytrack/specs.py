@@ -13,7 +13,7 @@ from fuzzytrack.yamltree import suggestion
 
 __all__ = ["Readers", "call_with", "check_options", "is_file", "parameters_of", "spelled", "split"]
 
-#: For types of parameters that are no words or numbers, what makes them of a word.
+#: For types of parameters other than words and numbers, the functions that make them from a word.
 Readers = Mapping[Any, Callable[[str], Any]]
 
 _OPTION = re.compile(r":([^\W\d]\w*)=([^:]*)$")

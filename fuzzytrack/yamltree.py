@@ -125,7 +125,7 @@ class Mapping(Node):
 
 
 def quoted(word: str) -> str:
-    """Show a word as error messages do: in quotes, and not endless."""
+    """A word as error messages show it: in quotes, and shortened if it is long."""
     if len(word) > _SHOWN_CHARACTERS:
         word = word[:_SHOWN_CHARACTERS] + "…"
     return repr(word)
@@ -134,7 +134,7 @@ def quoted(word: str) -> str:
 def suggestion(word: str, allowed: Collection[str]) -> str:
     """End of a message about an unknown word: a similar word, and the allowed ones."""
     words = [w if len(w) <= _SHOWN_CHARACTERS else w[:_SHOWN_CHARACTERS] + "…" for w in allowed]
-    # Without regard to case, which is the likeliest slip.
+    # Without regard to case, which is the most likely mistake.
     folded = {w.casefold(): w for w in reversed(words[:100])}
     close = difflib.get_close_matches(word[:_SHOWN_CHARACTERS].casefold(), folded, n=1)
     guess = f"; did you mean {folded[close[0]]!r}?" if close else ";"

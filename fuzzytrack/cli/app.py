@@ -35,7 +35,10 @@ COMMANDS = {
         "certify:certify",
         "Prove that the error shrinks for any order of gains, or show an order that makes it grow.",
     ),
-    "gains": ("gains:gains", "Show what fixed gains do: stability, poles, noise and lag."),
+    "gains": (
+        "gains:gains",
+        "Show properties of fixed gains: stability, poles, noise and lag.",
+    ),
     "trackers": (
         "trackers:trackers",
         "List trackers, schedulers and normalizations with their sources, plug-ins included.",
@@ -45,7 +48,7 @@ COMMANDS = {
         "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
     "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
-    "design": ("design:design", "Choose gains by a rule of design, and show what they do."),
+    "design": ("design:design", "Compute gains by a design rule, and show their properties."),
     "cache": ("cache:cache", "Show where compiled code is kept and how much of it, or remove it."),
 }
 

@@ -31,8 +31,8 @@ def certify(
 ) -> None:
     """Prove that the error shrinks for any order of gains, or show an order that makes it grow.
 
-    The gains of the rule base may switch from step to step in any way, not only as the rules would
-    have it.
+    The gains of the rule base may switch from step to step in any way, not only as the rules choose
+    them.
     """
     rules = load_rulebase(name)
     found = certify_gains(rules, reach=reach)

@@ -65,7 +65,7 @@ def trackers_named(text: str) -> dict[str, Tracker]:
     found = {name: make_tracker(name) for name in names}
     for name, tracker in found.items():
         if not getattr(tracker, "causal", True):
-            typer.echo(f"note: {name} looks at the plot that it predicts", err=True)
+            typer.echo(f"note: {name} uses the plot that it predicts", err=True)
     return found
 
 

@@ -1,4 +1,4 @@
-"""The commands that choose gains by a rule of design."""
+"""The commands that compute gains by a design rule."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["design"]
 design = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="Choose gains by a rule of design, and show what they do.",
+    help="Compute gains by a design rule, and show their properties.",
     rich_markup_mode=None,
 )
 
@@ -86,7 +86,7 @@ def benedict_bordner(
     sigma: Sigma = None,
     json: options.Json = False,
 ) -> None:
-    """Least transient error for its noise, at constant velocity."""
+    """The least transient error for a given noise, at constant velocity."""
     found = alpha, theory.benedict_bordner(alpha)
     _print_design("benedict-bordner", {"alpha": alpha}, found, dt, sigma, json)
 
@@ -100,7 +100,7 @@ def critically_damped(
     sigma: Sigma = None,
     json: options.Json = False,
 ) -> None:
-    """All poles in one place: a filter of fading memory."""
+    """All poles at one place: a filter with fading memory."""
     _one_of(alpha=alpha, xi=xi)
     if xi is not None:
         found = theory.fading_memory(xi, 3) if order == 3 else theory.fading_memory(xi, 2)

@@ -25,7 +25,7 @@ def gains(
     sigma: Sigma = None,
     json: options.Json = False,
 ) -> None:
-    """Show what fixed gains do: stability, poles, noise and lag."""
+    """Show properties of fixed gains: stability, poles, noise and lag."""
     found = theory.gain_card(alpha, beta, gamma, dt, sigma)
     if json:
         print_json(found)

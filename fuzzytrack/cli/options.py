@@ -35,7 +35,7 @@ Time = Annotated[
 ]
 Id = Annotated[
     str | None,
-    typer.Option(metavar="COL", help="Column that tells tracks apart. [default: one track]"),
+    typer.Option(metavar="COL", help="Column that identifies the track. [default: one track]"),
 ]
 Axes = Annotated[
     str | None,

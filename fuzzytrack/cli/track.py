@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["track"]
 
 
-# Bytes of a file above which it is tracked in pieces although nobody asks for it.
+# Bytes of a file above which it is tracked in pieces by default.
 _LARGE = 100_000_000
 # With more tracks than this, only totals are printed.
 _LISTED = 20
@@ -51,7 +51,7 @@ def track(
     axes: options.Axes = None,
     sigma: Annotated[
         float | None,
-        typer.Option(metavar="S", help="Standard deviation of the plots, for trackers that ask."),
+        typer.Option(metavar="S", help="Standard deviation of the plots, if the tracker needs it."),
     ] = None,
     sort: options.Sort = False,
     output: Annotated[

@@ -149,5 +149,5 @@ def _merged(consequents: Iterable[Consequent]) -> tuple[Consequent, ...]:
 
 def _total(shares: list[float]) -> float:
     total = math.fsum(shares)
-    # Shares such as 0.7, 0.2 and 0.1 are meant to add to certainty; one alone is what it is.
+    # Shares such as 0.7, 0.2 and 0.1 are meant to add up to 1; a single one stays as it is.
     return 1.0 if len(shares) > 1 and abs(total - 1.0) <= 1e-12 else total

@@ -106,8 +106,8 @@ def strengths(
     grades : dict of ndarray
         For each input, the grades of its sets, shape (n_sets, n).
     whole : dict of ndarray, optional
-        For each input, its grade of the whole universe, shape (n,): what a fuzzy input gives to
-        a rule that does not name it. One unless given.
+        For each input, its grade of the whole universe, shape (n,): the grade of a fuzzy input in a
+        rule that does not name it. One unless given.
 
     Returns
     -------

@@ -102,7 +102,7 @@ def _bell(parameters: Parameters, x: str) -> str:
 
 
 # The ends come first: between neighboring floats the middle is rounded to one of them. At the
-# middle itself the half counts that scikit-fuzzy takes there, which differs from shape to shape.
+# middle itself, the half that scikit-fuzzy uses there is used; it differs between shapes.
 def _s_curve(a: float, b: float, x: str, lower: str) -> str:
     middle, width = (a + b) / 2, b - a
     if width == 0:

@@ -3,8 +3,8 @@
 Where neighboring sets cross, one rises as the other falls, so a grade is the difference of two
 ramps, each 0 below an interval and 1 above it. With products as AND and sums as OR, an output is
 then a sum over products of ramps, one an input, whose weights are differences of neighboring
-cells of the rule table. Most of those are zero, no rule has to be looked up, and there is nothing
-to divide by.
+cells of the rule table. Most of these weights are zero, and neither look-ups of rules nor divisions
+are needed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ __all__ = ["Ramps", "find_ramps"]
 
 # Weights so small beside the cells are rounding.
 _ROUNDING = 1e-13
-# Cells often are whole multiples of one step: up to this one, they are written so.
+# Weights are often whole multiples of one step: up to this multiple, they are written so.
 _LARGEST_MULTIPLE = 8
 
 
@@ -57,7 +57,7 @@ class Ramps:
                 name = f"r{k}_{j}"
                 written += [
                     f"{name} = {products[slope]} - {low * slope!r}",
-                    # Told this way round, each compiles to one instruction.
+                    # In this form each compiles to one instruction.
                     f"{name} = 0.0 if {name} < 0.0 else {name}",
                     f"{name} = 1.0 if {name} > 1.0 else {name}",
                 ]
@@ -93,7 +93,7 @@ def find_ramps(rules: RuleBase) -> Ramps | None:
 
 
 def _order(variable: Variable) -> list[int] | None:
-    """Indices of the sets from low to high; None if some are no trapezoids."""
+    """Indices of the sets from low to high; None if some are not trapezoids."""
     if any(s.shape not in ("trimf", "trapmf") for s in variable.sets):
         return None
     return sorted(range(len(variable.sets)), key=lambda k: variable.sets[k].parameters)
@@ -109,7 +109,7 @@ def _crossings(variable: Variable, order: list[int]) -> list[tuple[float, float]
     ends = [(c, d) for _, _, c, d in corners[:-1]]
     fits = ends == [(a, b) for a, b, _, _ in corners[1:]]
     fits = fits and corners[0][1] <= low and corners[-1][2] >= high
-    # Sets with an upright flank share their corner, and both have it whole.
+    # Sets with a vertical flank share their corner, and it has grade 1 in both.
     narrow = any(d - c < 1e-9 * (high - low) for c, d in ends)
     inside = all(low <= c and d <= high for c, d in ends)
     return ends if fits and inside and not narrow else None
@@ -148,7 +148,7 @@ def _weights(cells: Array) -> tuple[float, float, Array]:
     sizes = np.abs(weights[weights != 0.0])
     if not len(sizes):
         return base, 1.0, weights
-    # The largest is told most exactly.
+    # The largest one gives the step most precisely.
     unit = float(sizes.max()) / max(1.0, float(np.rint(sizes.max() / sizes.min())))
     multiples = np.rint(weights / unit)
     alike = np.abs(multiples * unit - weights).max() < _ROUNDING * np.abs(cells).max()
@@ -180,7 +180,7 @@ def _expression(weights: Array, axis: int) -> str:
 
 def _sum(terms: list[str]) -> str:
     """Sum of two halves, each summed so: the fewest additions then depend on one another."""
-    # None that starts with a minus, if it can be helped.
+    # If possible, no sum starts with a minus.
     terms = sorted(terms, key=lambda term: term.startswith("-"))
     if len(terms) < 3:
         return " + ".join(terms).replace("+ -", "- ")

@@ -71,7 +71,7 @@ class Reader:
         Raises
         ------
         RuleBaseError
-            At the first thing that is wrong.
+            At the first mistake.
         """
         document = self.document
         self._check_version()
@@ -242,7 +242,7 @@ class Reader:
         self, fuzzy_set: FuzzySet, node: Node, variable: str, universe: Universe
     ) -> None:
         start, end = SHAPES[fuzzy_set.shape].core(fuzzy_set.parameters)
-        # A sigmoid reaches 1 nowhere; what counts is that it is above zero somewhere.
+        # A sigmoid is never exactly 1; it is enough that it is above zero somewhere.
         low, high = fuzzy_set.support()[:2] if math.isinf(start) and start == end else (start, end)
         if high < universe.low or low > universe.high:
             raise self.document.error(

@@ -216,7 +216,7 @@ class RuleBase:
     def _in_order(self) -> tuple[Rule, ...]:
         """Conditions and consequents in the order of the variables, the rules of a table by row.
 
-        Two rule bases that say the same are then equal, whichever way they were written.
+        Rule bases with the same rules are then equal, in whatever order they were written.
         """
         inputs = {v.name: k for k, v in enumerate(self.inputs)}
         outputs = {v.name: (k, v) for k, v in enumerate(self.outputs)}

@@ -29,7 +29,7 @@ _WIDTH = 96
 _PLAIN_WORD = re.compile(r"[^\W\d](?:[\w.@-]*[\w@])?")
 _PLAIN_NUMBER = re.compile(r"-?[0-9]+(?:\.[0-9]+)?")
 _PLAIN_TEXT = re.compile(r"[^\W\d](?:[\w ().,;/%+&*'^-]*[\w).])?")
-# What some YAML reader or other takes for a truth value or nothing.
+# Words that some YAML readers take for true, false or null.
 _NOT_WORDS = frozenset({"y", "n", "yes", "no", "on", "off", "true", "false", "null"})
 
 
@@ -126,7 +126,7 @@ def _lines(rules: RuleBase) -> Iterator[str]:
 
 
 def _prose(key: str, text: str) -> Iterator[str]:
-    """Long running text folded, anything else on one line."""
+    """Long text folded over several lines, other text on one line."""
     if len(text) < _WIDTH - len(key) or text != " ".join(text.split()):
         yield f"{key}: {_text(text)}"
         return
@@ -272,7 +272,7 @@ def _setting(word: str) -> str:
 
 
 def _word(word: str) -> str:
-    """Write a word of the model, in quotes where a YAML reader could take it for another thing."""
+    """Write a word of the model, in quotes where a YAML reader could misread it."""
     plain = _PLAIN_WORD.fullmatch(word) and word.casefold() not in _NOT_WORDS
     return word if plain else json.dumps(word, ensure_ascii=False)
 
@@ -296,7 +296,7 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
     where : mapping
         Input to set, e.g. ``{"dE": "ns", "E": "pl"}``: the conditions of the rule, all of them.
     cell : str
-        What the rule is to say, as it would stand in a table: ``M-Z``, ``M-Z@0.5`` or
+        The new conclusion of the rule, as it is written in a table: ``M-Z``, ``M-Z@0.5`` or
         ``[S-L@0.5, M-L@0.5]``, the outputs in the order of the table's ``cells`` (without a table,
         in the order in which the rule names them); or ``{stiffness: M, damping: Z}``.
     file : str
@@ -305,7 +305,7 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
     Returns
     -------
     str
-        The text, every byte outside that cell as it was.
+        The text; nothing outside that cell is changed.
 
     Raises
     ------

@@ -46,8 +46,8 @@ def rulebase_schema(scheduler: Schema | None = None) -> Schema:
     Returns
     -------
     dict
-        The schema. It knows the words and shapes of the format; whether the words fit each other
-        only loading can tell.
+        The schema. It contains the words and the structure of the format; whether the parts fit
+        each other is checked when a file is loaded.
     """
     properties = {
         "rulebase": {"description": "Version of the format.", "const": int(FORMAT_VERSION)},

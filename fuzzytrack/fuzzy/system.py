@@ -88,7 +88,7 @@ class FuzzySystem:
 
     Notes
     -----
-    Inputs outside their universe are taken at its nearest end; a NaN input gives NaN. With
+    Inputs outside of their universe are replaced by its nearest end; a NaN input gives NaN. With
     non-singleton inputs ``exact`` uses that the composition factorizes over the sets, which holds
     for every algebra but min with sum; there ``relation`` has to be used.
     """
@@ -358,8 +358,8 @@ class FuzzySystem:
         Raises
         ------
         ValueError
-            If the rule base has one input, `inputs` are not two different ones, a value in `at`
-            is missing or too many, or `points` is below 2.
+            If the rule base has one input, `inputs` are not two different ones, a value in `at` is
+            missing or not needed, or `points` is below 2.
         """
         self.rules.output(output)
         names = inputs or self.rules.input_names[:2]

@@ -174,7 +174,7 @@ class Variable:
         Yields
         ------
         low, high : float
-            In ascending order; equal where only one point is bare.
+            In ascending order; equal where only one point has no membership.
         """
         end, end_covered = self.universe.low, False
         supports = [s.support() for s in self.sets if set_names is None or s.name in set_names]

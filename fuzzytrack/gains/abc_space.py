@@ -127,7 +127,7 @@ def abc_preimages(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> Triple
     real = discriminant(a, b) >= 0
 
     def other(third: Array, left: Array) -> Triple:
-        """With `third` as third pole, and `left` and the one that was third as the pair."""
+        """The same filter with `third` as third pole; `left` and the former third are the pair."""
         product = left * delta
         first = left + delta - product
         return tuple(np.where(real, value, np.nan) for value in (first, product, third))  # type: ignore[return-value]

@@ -16,7 +16,7 @@ from fuzzytrack.gains.wdomain import w_from_alpha_beta_gamma
 
 __all__ = ["gain_card", "kalata_gains_at"]
 
-# A printed gain has few digits; gains as near to Kalata's as this are taken for them.
+# Printed gains have few digits: gains this close to Kalata's count as Kalata's.
 NEAR = 1e-3
 
 
@@ -37,9 +37,9 @@ def gain_card(
     Returns
     -------
     dict
-        Numbers, words, and lists and mappings of them, by name; what does not exist is None. Of
-        gains that are not stable only the gains themselves, ``stable``, ``reason``, ``region`` and
-        ``poles``. ``deviation`` and ``covariance`` are there if `sigma` is given.
+        Numbers, words, and lists and mappings of them, by name; what does not exist is None. For
+        gains that are not stable, only the gains, ``stable``, ``reason``, ``region`` and ``poles``
+        are there. ``deviation`` and ``covariance`` are there if `sigma` is given.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def _reason(alpha: float, beta: float, gamma: float) -> str:
 
 
 def _tracking_index(alpha: float, beta: float, gamma: float) -> float | None:
-    """λ of Kalata's gains, if these are such."""
+    """Tracking index λ if the gains are Kalata's, else None."""
     if not alpha < 1:
         return None
     root = math.sqrt(1 - alpha)

@@ -1,9 +1,10 @@
 """Certified stability of scheduled gains that switch in any order.
 
 A filter whose gains are stable one by one may still diverge when they change from step to step.
-The error of an α-β filter moves by a matrix that is affine in the gains, so a quadratic function
-that shrinks at the corners of a set of gains shrinks for every gain inside, in any order: a common
-Lyapunov function. If none is found, a sequence of gains is searched under which the error grows.
+At each step the error of an α-β filter is multiplied by a matrix that is affine in the gains. So a
+quadratic function that decreases for the gains at the corners of a set decreases for all gains
+inside, in any order: a common Lyapunov function. If none is found, the search is for a sequence of
+gains with which the error grows.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ __all__ = [
 ]
 
 
-#: A rate this close to 1 is not told from 1 in floating point.
+#: Rates this close to 1 cannot be distinguished from 1 in floating point.
 _MARGIN = 1e-9
 _SEARCH_VERTICES = 24
 _BEAM = 400
@@ -35,13 +36,13 @@ _BEAM = 400
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """What was found about a set of gains under arbitrary switching.
+    """Result of the stability check of a set of gains under arbitrary switching.
 
     Attributes
     ----------
     verdict : {"certified", "refuted", "not decided"}
         ``certified``: the error contracts for any gains in the set, in any order. ``refuted``: a
-        sequence of gains was found under which it grows. ``not decided``: neither was shown.
+        sequence of gains was found with which it grows. ``not decided``: neither was shown.
     rate : float
         Contraction of the Lyapunov function's root per step, the best one found; below 1 if and
         only if certified.
@@ -52,7 +53,7 @@ class Certificate:
     sequence : ndarray, shape (length, 2)
         Gains which, repeated in this order, make the error grow; empty unless refuted.
     growth : float
-        Growth of the error per step under that sequence; NaN unless refuted.
+        Growth of the error per step with that sequence; NaN unless refuted.
     """
 
     verdict: str
@@ -64,7 +65,7 @@ class Certificate:
 
 
 def error_matrix(alpha: ArrayLike, beta: ArrayLike) -> Array:
-    """How one update moves the prediction error (x, T v) of an α-β filter.
+    """Matrix by which one update multiplies the prediction error (x, T v) of an α-β filter.
 
     Parameters
     ----------
@@ -112,20 +113,20 @@ def polygon_in_gains(corners: ArrayLike, pieces: int = 32) -> tuple[Array, Array
     """Image of a polygon of (stiffness, damping) in the gains, from outside and from inside.
 
     In p = 2ζω₀ and q = ω₀² an edge of the polygon becomes a parabola, whose hull is inside that of
-    its three control points; from there to (α, β) straight lines stay straight. So the hull of the
-    first answer holds the image exactly, not by sampling.
+    its three control points; the map from there to (α, β) keeps straight lines straight. So the
+    hull of `around` contains the whole image, not only a sample of it.
 
     Parameters
     ----------
     corners : array_like, shape (n, 2)
         Corners of a convex polygon, in order.
     pieces : int
-        Pieces into which each edge is cut; more fit the image more closely.
+        Pieces into which each edge is divided; with more pieces the result is closer to the image.
 
     Returns
     -------
     around : ndarray, shape (n, 2)
-        (α, β) whose convex hull holds the image; not all of them belong to it.
+        (α, β) whose convex hull contains the image; not all of them belong to the image.
     reached : ndarray, shape (m, 2)
         (α, β) on the edge of the image.
     """
@@ -149,7 +150,7 @@ def certify_region(corners: ArrayLike, max_length: int = 8) -> Certificate:
     Parameters
     ----------
     corners : array_like, shape (n, 2)
-        (stiffness, damping), in order; of a box, see `box`.
+        (stiffness, damping), in order; `box` returns those of a box.
     max_length : int
         Longest sequence of gains tried as a counter-example.
 
@@ -180,8 +181,8 @@ def certify(
     max_length : int
         Longest sequence of gains tried as a counter-example.
     reached : array_like, shape (m, 2), optional
-        Gains that belong to the set for certain, of which counter-examples are made; `gains`
-        unless given.
+        Gains that certainly belong to the set; counter-examples are made of them. `gains` unless
+        given.
 
     Returns
     -------
@@ -196,8 +197,8 @@ def certify(
     -----
     The rate minimizes the largest eigenvalue of P⁻¹FᵀPF over the vertices, a quasi-convex problem
     in two unknowns. The counter-example is a product of vertex matrices with spectral radius above
-    1, found by a beam search and hence an explicit proof, but a search that finds none proves
-    nothing. Missed plots (α = β = 0) lie outside of every certificate.
+    1, found by a beam search, and is an explicit proof; if the search finds none, nothing is
+    proved. Missed plots (α = β = 0) lie outside of every certificate.
 
     Examples
     --------
@@ -262,8 +263,8 @@ def _best_lyapunov(matrices: Array) -> tuple[float, Array]:
 
     best = None
     for start in ((0.5, 0.0), (1.5, 1.0)):
-        # Not differentiable where two vertices are equally bad, hence a simplex method; started
-        # anew where it stopped, since a simplex may collapse on such a ridge.
+        # Not differentiable where two vertices are equally bad, hence a simplex method. It is
+        # restarted where it stopped, since a simplex may collapse on such a ridge.
         found = minimize(rate, start, method="Nelder-Mead", options=_PRECISE)
         found = minimize(rate, found.x, method="Nelder-Mead", options=_PRECISE)
         if best is None or found.fun < best.fun:
@@ -276,7 +277,7 @@ _PRECISE = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000, "maxfev": 4000}
 
 
 def _spread(vertices: Array) -> NDArray[np.intp]:
-    """Indices of few vertices that stand for all: a search over sequences cannot use hundreds."""
+    """Indices of a few vertices, far apart: a search over sequences cannot use hundreds."""
     if len(vertices) <= _SEARCH_VERTICES:
         return np.arange(len(vertices))
     chosen = [int(np.argmin(vertices[:, 0]))]

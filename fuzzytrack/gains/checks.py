@@ -1,4 +1,4 @@
-"""Checks of arguments that the theory of gains shares; each returns what it has checked."""
+"""Checks of arguments for all functions on gains; each returns the checked value."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def inside(alpha: Array, beta: Array, gamma: Array) -> NDArray[np.bool_]:
     """Whether gains lie in the open stability region; false for NaN and infinity."""
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         triangle = (alpha > 0) & (alpha < 2) & (beta > 0) & (4 - 2 * alpha - beta > 0)
-        # γ = 0 is asked apart: there the filter has two states, and the product may underflow.
+        # γ = 0 is tested separately: there the filter has two states, and the product may
+        # underflow.
         below = (gamma == 0) | ((gamma > 0) & (gamma * (2 - alpha) < 4 * alpha * beta))
     good: NDArray[np.bool_] = triangle & below
     return good
@@ -86,7 +87,7 @@ def _index(at: tuple[np.intp, ...]) -> str:
 
 
 def number(name: str, array: Array) -> float:
-    """One number out of an array of no axes, or a ValueError that names it."""
+    """The number in an array without axes, or a ValueError that names it."""
     if array.ndim:
         raise ValueError(f"{name} must be one number, got an array of shape {array.shape}")
     return float(array)

@@ -20,7 +20,7 @@ __all__ = ["CircleOptimum", "optimal_on_circle"]
 
 @dataclass(frozen=True)
 class CircleOptimum:
-    """Gains for a circle, and whether anything is better.
+    """Optimal gains for a circle, and whether other gains cost less.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class CircleOptimum:
 
     @property
     def is_global(self) -> bool:
-        """Whether no gains at all cost less, those on the edge of stability included."""
+        """Whether no other gains cost less, including those on the edge of stability."""
         return self.cost <= self.edge_cost
 
 
@@ -83,8 +83,8 @@ def optimal_on_circle(
     Returns
     -------
     CircleOptimum
-        The minimum in the interior of the stability region. Compare its `is_global`: when noise
-        weighs much, it is cheaper to give the circle up.
+        The minimum in the interior of the stability region. Compare its `is_global`: with a large
+        weight of the noise, it costs less not to follow the circle.
 
     Raises
     ------
@@ -94,10 +94,11 @@ def optimal_on_circle(
 
     Notes
     -----
-    Llinas et al. (1998), section 2.4.1. The optimum does not glide to α = 0.0032, β = 0 as the
-    weight of the noise grows. On a circle the error of a filter that does not follow is bounded
-    (by the radius at α = β = 0), so the interior minimum is first overtaken by the edge, a jump
-    of the global optimum, and later it vanishes altogether.
+    Llinas et al. (1998), section 2.4.1. As the weight of the noise grows, the optimum does not tend
+    to α = 0.0032, β = 0. On a circle the error of a filter that does not follow the target is
+    bounded (by the radius at α = β = 0). So from some weight on, the edge costs less than the
+    interior minimum, and the global optimum jumps there; from a larger weight on, there is no
+    interior minimum.
 
     Examples
     --------
@@ -119,7 +120,8 @@ def optimal_on_circle(
     cost = TrackingCost(sigma=1.0, kappa=weight, dt=t, radius=r, angular_rate=rate)
     region = Region({}, gamma)
     search = Search(cost, region, finer=2 if gamma else 4)
-    # Where the grid falls to its border there may be a minimum beyond, with hardly any noise.
+    # Where the cost falls toward the border of the grid, there may be a minimum beyond it, with
+    # hardly any noise.
     begins = search.grid_minima(4, border=False) + search.grid_minima(4)
     found = [search.descend(begin, 0.05) for begin in begins]
     interior = [optimum for optimum, attained in found if attained]

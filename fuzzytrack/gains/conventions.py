@@ -1,4 +1,4 @@
-"""What authors mean by γ: the acceleration gain is q/T², and γ is twice, once or half of q."""
+"""Conventions for γ: the acceleration gain is q/T², and γ is 2q, q or q/2."""
 
 from __future__ import annotations
 

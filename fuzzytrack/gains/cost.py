@@ -25,7 +25,7 @@ Cost = Callable[..., Any]
 
 @dataclass(frozen=True, kw_only=True)
 class TrackingCost:
-    """Weighted sum of what noise and motion cost; call it with gains.
+    """Weighted sum of the costs of noise and motion, as a function of the gains.
 
     f = transient J + steady e² + circle d² + kappa σ² ρ², where J is the `transient_cost` of the
     straight line with `velocity` and `acceleration`, e the `steady_error` under `acceleration`
@@ -53,7 +53,7 @@ class TrackingCost:
     -----
     Llinas et al. (1998), Eqs. 2.92 to 2.95. With an acceleration and without γ, the transient
     cost leaves out the steady lag. For small positive accelerations it is then least where β
-    cancels the transient and the lag is great: give `steady` a weight.
+    cancels the transient, although the lag is large there: set a weight `steady`.
 
     Examples
     --------
@@ -93,7 +93,7 @@ class TrackingCost:
         return cost[()]
 
     def _of(self, alpha: Any, beta: Any, gamma: Any = None) -> Any:
-        """Cost of gains that are known to be stable: of filters without γ where that is None."""
+        """Cost of gains that are known to be stable; filters have no γ where it is None."""
         g = 0.0 if gamma is None else gamma
         total = self.kappa * self.sigma**2 * variance_ratio(alpha, beta, g)
         if self.transient and (self.velocity or self.acceleration):
@@ -121,9 +121,9 @@ class Optimum:
     alpha, beta, gamma : float
         The gains, dimensionless.
     cost : float
-        What they cost, in the unit of the cost.
+        Their cost, in the unit of the cost function.
     at_bound : tuple of str
-        Gains that a bound holds; ``"gamma"`` too where the best filter has none.
+        Names of the gains that are at a bound; also ``"gamma"`` where the best filter has γ = 0.
     """
 
     alpha: float

@@ -76,7 +76,7 @@ def kalata(tracking_index: ArrayLike, order: int = 2) -> Pair | Triple:
     ----------
     tracking_index : array_like
         λ = σ_v T²/σ_w, dimensionless, >= 0; see `tracking_index`. 0 gives gains of 0: a filter that
-        no longer listens, on the edge of stability.
+        ignores the plots, on the edge of stability.
     order : {2, 3}
         2: nearly constant velocity, a new acceleration in each interval. 3: nearly constant
         acceleration, a new step of it in each interval.
@@ -137,7 +137,7 @@ def _kalata_q(index: Array) -> Array:
 
 
 _NEWTON_STEPS = 8
-"""The start is off by less than 1 in t, and each step squares the error: 5 would do."""
+"""The start has an error below 1 in t, and each step squares it: 5 steps would be enough."""
 
 
 def benedict_bordner(alpha: ArrayLike) -> Array:
@@ -300,8 +300,8 @@ def growing_memory(n: ArrayLike, order: int = 2) -> Pair | Triple:
     Notes
     -----
     Al-Wagih & Abdulla, Eqs. 23 to 25. At n = `order` the fit is exact and the filter follows the
-    last plots. At n = 1 the formulas of order 2 would give the unstable pair (1, 3): who schedules
-    these gains from the first plot on must hold n at 2 or more (these authors: 3).
+    last plots. At n = 1 the formulas of order 2 would give the unstable pair (1, 3): a scheduler
+    that uses them from the first plot on must keep n at 2 or more (these authors: 3).
 
     Examples
     --------
@@ -323,7 +323,7 @@ def growing_memory(n: ArrayLike, order: int = 2) -> Pair | Triple:
 
 
 def quality(n: ArrayLike) -> Pair:
-    """Gains by track quality: fewer plots in a row, more trust in the next.
+    """Gains from the quality of a track: the lower it is, the larger the gains.
 
     Parameters
     ----------

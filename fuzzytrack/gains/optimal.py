@@ -233,7 +233,7 @@ def optimal_for_steady_error(index: ArrayLike) -> tuple[Array, Array]:
     Notes
     -----
     Llinas et al. (1998), Eq. 2.102; the second condition, 2q⁵/(2 - q)³ = index² with q = √β,
-    stands in for Eq. 2.103, which only repeats the first.
+    replaces Eq. 2.103, which only repeats the first.
 
     Examples
     --------

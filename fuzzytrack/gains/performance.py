@@ -1,11 +1,11 @@
-"""What a pair or triple of gains does in the steady state: noise passed on, lag, transients.
+"""Performance of gains: noise in the outputs, steady lag, cost of transients.
 
 Every function takes the gains of the recursion
 
     x⁻ = x + v T + a T²/2,  v⁻ = v + a T,  x = x⁻ + α e,  v = v⁻ + (β/T) e,  a = a⁻ + (γ/(2T²)) e,
 
-where e = observation - x⁻. Zero γ stands for the filter without acceleration, whose third pole
-does not exist. Everything here is a closed form, and everything broadcasts.
+where e = observation - x⁻. γ = 0 is the filter without acceleration, which has two poles. All
+functions are closed forms, and their arguments broadcast.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def noise_ratio(
     -----
     Llinas et al. (1998), Eqs. 2.68 and 2.69, from the steady state of the discrete Lyapunov
     equation: Eq. 2.68 as printed carries a spurious factor 4b. The three columns of their Table
-    2.4 for α = 0.5, β = 0.7 are three outputs, not three opinions: 1.9565 is ``"predicted"``,
+    2.4 for α = 0.5, β = 0.7 are the ratios of three different outputs: 1.9565 is ``"predicted"``,
     1.2058 (Sklansky) is ``"interval"`` and 0.7391 (Benedict and Bordner) is ``"filtered"``.
 
     Examples
@@ -140,7 +140,7 @@ def covariance(
 
     The target moves with constant velocity, disturbed in each interval by a constant acceleration
     that is white from one interval to the next: the model under which the gains of Kalata are
-    optimal. It holds for any stable pair, not only for those.
+    optimal. The covariance holds for any stable pair.
 
     Parameters
     ----------
@@ -268,8 +268,8 @@ def circular_error(
 
     Notes
     -----
-    Llinas et al. (1998), Eqs. 2.76 and 2.77, with one root over everything; what stands under the
-    root is written as the sum of two squares that it is, which keeps its digits for slow turns.
+    Llinas et al. (1998), Eqs. 2.76 and 2.77, with one root over everything. The expression under
+    the root is written as a sum of two squares, which keeps its precision for slow turns.
 
     Examples
     --------
@@ -299,8 +299,8 @@ def transient_cost(
 ) -> Array:
     """Sum of T e² while a filter at rest catches up with a target on a straight line.
 
-    The target starts at the filter's position with a velocity and a constant acceleration of
-    which the filter knows nothing; e is the error of the prediction, without noise.
+    The target starts at the filter's position with a velocity and a constant acceleration that the
+    filter does not know; e is the error of the prediction, without noise.
 
     Parameters
     ----------

@@ -28,28 +28,27 @@ def optimal_gains(
 ) -> Optimum:
     """Stable gains that minimize any cost.
 
-    A search on a grid over all stable gains within the bounds, then downhill from the best few
-    of its minima. Every candidate is stable and within the bounds, so the cost is asked nothing
-    else.
+    A search on a grid over all stable gains within the bounds, then downhill from the best few of
+    its minima. The cost is called only with stable gains within the bounds.
 
     Parameters
     ----------
     cost : callable
         ``cost(alpha, beta)``, or ``cost(alpha, beta, gamma)`` if `gamma` is true: called with
-        numbers, returns a number (not finite where it does not want the gains). `TrackingCost`
-        makes the usual ones.
+        numbers, returns a number (not finite to exclude these gains). `TrackingCost` is the usual
+        one.
     bounds : mapping, optional
         Lowest and highest value for any of ``"alpha"``, ``"beta"``, ``"gamma"``; equal ones fix
         the gain.
     gamma : bool
         Whether to search for an alpha-beta-gamma filter.
     start : sequence of float, optional
-        Stable gains from which to go downhill too.
+        Stable gains as a further start of the search downhill.
 
     Returns
     -------
     Optimum
-        Gains, their cost, and the bounds that hold them.
+        Gains, their cost, and which of them are at a bound.
 
     Raises
     ------
@@ -158,7 +157,7 @@ class Search:
         self.cost, self.region, self.finer = cost, region, finer
 
     def grid_minima(self, most: int, border: bool = True) -> list[Array]:
-        """Where to begin: the least minima on a grid, those on its border if wished."""
+        """Starting points: the least minima on a grid, those on its border if wished."""
         from scipy.ndimage import minimum_filter
 
         # Small gains want a logarithmic mesh; β is about half the square of α.
@@ -183,7 +182,7 @@ class Search:
 
         best, level = start, self._value(start)
         scale = abs(level) if np.isfinite(level) else 1.0
-        for _ in range(8):  # a simplex can collapse on its way: begin anew where it stopped
+        for _ in range(8):  # a simplex can collapse: restart where it stopped
             simplex = np.vstack([best, best + size * np.eye(best.size)])
             result = minimize(
                 self._value,
@@ -205,7 +204,7 @@ class Search:
         return self._settle(best, level)
 
     def _settle(self, logits: Array, level: float) -> tuple[Optimum, bool]:
-        """Put gains that a bound holds onto it; tell whether the minimum is attained."""
+        """Set gains that are at a bound to it exactly; return whether the minimum is attained."""
         held: list[str] = []
         attained = np.isfinite(level)
         for k in range(self.region.size):
@@ -231,7 +230,7 @@ class Search:
         """Cost of one set of gains; infinite where there is none."""
         gains = [float(gain) for gain in self.region.gains(logits)]
         a, b, g = gains if len(gains) == 3 else (*gains, 0.0)
-        # The arithmetic of `inside`, for numbers: they come by the thousand.
+        # The arithmetic of `inside`, for numbers: called thousands of times.
         if not (a > 0 and b > 0 and 4 - 2 * a - b > 0 and 0 <= g * (2 - a) < 4 * a * b):
             return np.inf
         if isinstance(self.cost, TrackingCost):

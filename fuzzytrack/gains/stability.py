@@ -1,8 +1,8 @@
-"""Where α-β(-γ) filters are stable, where their poles lie, and how they answer a step.
+"""Where α-β(-γ) filters are stable, where their poles lie, and how they respond to a step.
 
 Gains are dimensionless, γ in the convention of acceleration gain γ/(2T²), poles in the z plane.
 Source: Llinas et al. (1998), section 2.2. The arithmetic works with δ = 1 - z, the distance of a
-pole from 1: for small gains all poles crowd there, and only their distances keep their digits.
+pole from 1: for small gains all poles are close to 1, and only their distances from it are precise.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ def jury(coefficients: ArrayLike) -> Mask:
     Returns
     -------
     ndarray of bool
-        One answer per polynomial, shape ``coefficients.shape[:-1]`` (a bool for one polynomial).
-        Stability is strict: a root on the unit circle makes a condition an equality, and the answer
-        false. Within rounding of the circle the answer is that of the rounded table.
+        One result per polynomial, shape ``coefficients.shape[:-1]`` (a bool for one polynomial).
+        Stability is strict: with a root on the unit circle the result is false. For roots within
+        rounding of the circle it depends on the rounding of the table.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def in_closed_region(
     -------
     ndarray of bool
         Of the broadcast shape (a bool for numbers). The stability region with its edge, and within
-        rounding (1e-12) of it: gains of 0, which leave a plot out, belong to it.
+        rounding (1e-12) of it: gains of 0, with which a plot is ignored, belong to it.
 
     Raises
     ------
@@ -220,7 +220,7 @@ def poles(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike = 0.0) -> NDArray[
 
 
 def region(alpha: ArrayLike, beta: ArrayLike) -> NDArray[np.str_]:
-    """Name of the region of the α-β plane: how the filter answers a step.
+    """Name of the region of the α-β plane: how the filter responds to a step.
 
     Parameters
     ----------

@@ -165,7 +165,7 @@ def alpha_beta_gamma_from_w(
         Damping ratio of the pair, dimensionless, >= 0.
     omega3 : array_like
         Corner frequency of the third pole, w = -ω₃, in the unit of `omega0`, >= 0: how fast the
-        filter learns an acceleration. 0 gives the α-β filter of `alpha_beta_from_w`, γ = 0.
+        filter adapts to an acceleration. 0 gives the α-β filter of `alpha_beta_from_w`, γ = 0.
     dt : array_like, optional
         Sampling time T, s, > 0. All arguments broadcast.
 
@@ -241,8 +241,8 @@ def w_from_alpha_beta_gamma(
 def alpha_beta_from_s(omega0: ArrayLike, zeta: ArrayLike, dt: ArrayLike) -> tuple[Array, Array]:
     """Gains whose poles are those of a continuous system, sampled: z = exp(sT).
 
-    Where ω₀T is not small, `alpha_beta_from_w` bends the frequency; here the filter rings at
-    ω₀√(1 - ζ²) exactly. In return it covers only a part of the stable gains, α < 1.
+    Where ω₀T is not small, `alpha_beta_from_w` distorts the frequency; here the filter oscillates
+    at ω₀√(1 - ζ²) exactly. But only a part of the stable gains can be reached, those with α < 1.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ __all__ = ["compiled_one_step", "compiled_run", "layout"]
 
 
 def layout(rows: Rows) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """What the loops need to know of the rows of a lane: sizes and places, and those of outputs."""
+    """Numbers and positions of the rows of a lane, and of its outputs, for the loops."""
     places = (rows.n_axes, rows.state, rows.kept, rows.plot, rows.sigma, rows.dt, rows.plots)
     return places, tuple(rows.output(name) for name in OUTPUTS)
 

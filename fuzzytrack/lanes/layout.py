@@ -36,10 +36,10 @@ class Rows:
     n_axes : int
         Axes of a lane.
     n_memory : int
-        Numbers that a tracker or its scheduler remembers of a lane.
+        Numbers in the memory of the tracker or its scheduler, for a lane.
     scratch : tuple of str
-        Names of rows for intermediate results of a step, one row each. A step finds there what
-        another one left.
+        Names of rows for intermediate results of a step, one row each. At the beginning of a step
+        they contain values of another step.
     """
 
     n_axes: int
@@ -68,7 +68,7 @@ class Rows:
 
     @property
     def gap(self) -> int:
-        """Time since the last plot (s); 0 where the tracker makes no use of it."""
+        """Time since the last plot (s); 0 where the tracker does not use it."""
         return 4 * self.n_axes
 
     @property

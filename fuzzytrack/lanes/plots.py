@@ -1,6 +1,6 @@
 """Plots, times and standard deviations as a user gives them: checked, and laid out as lanes.
 
-`fuzzytrack.trackers.lane_tracker` passes through here whatever `run`, `start` and `step` are given.
+`fuzzytrack.trackers.lane_tracker` uses it for the arguments of `run`, `start` and `step`.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def time_steps(times: Array, shape: tuple[int, ...], before: ArrayLike | None) -
     shape : tuple of int
         Shape of the plots.
     before : array_like or None
-        Time of the state from which tracks go on (s); None for new tracks.
+        Time of the state from which tracks continue (s); None for new tracks.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def plot_sigmas(sigma: ArrayLike | None, plots: Array, needed_by: str | None) ->
 
 
 def check_single_precision(what: str, values: Array, needed: NDArray[Any]) -> None:
-    """Refuse numbers that single precision rounds to 0 or infinity, unless `needed` is NaN there.
+    """Check that single precision rounds no number to 0 or infinity, unless `needed` is NaN there.
 
     Raises
     ------

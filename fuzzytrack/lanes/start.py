@@ -25,7 +25,7 @@ __all__ = [
 
 
 def begin_step(plots: float, gap: float, dt: float, seen: bool) -> tuple[float, float, bool, bool]:
-    """Tell what kind of step it is.
+    """Determine the kind of a step.
 
     Parameters
     ----------

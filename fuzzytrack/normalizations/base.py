@@ -34,10 +34,10 @@ class Normalization(ABC):
 
     Notes
     -----
-    The numbers that its constructor takes may stand beside its name in the scheduler settings of a
-    rule base.
-    Where the rule base opens with a growing memory, also one that does not see every step is called
-    with zeros at the first plot of a track, and at the second if velocity starts from it.
+    The numbers that its constructor takes can be given next to its name in the scheduler settings
+    of a rule base. If the rule base opens with a growing memory, a normalization is called with
+    zeros at the first plot of a track, and at the second if velocity starts from it, even if it
+    does not see every step.
     """
 
     source: ClassVar[str] = ""

@@ -27,8 +27,8 @@ class Smoothed(Normalization):
     """Exponentially smoothed innovation over the standard deviation of the plot, axis by axis.
 
     s = ρs′ + (1 - ρ)e/σ, with s′ the s of the update before (0 at first), and e/σ itself as the
-    second signal. Noise averages out in s and a lag behind the target does not, so s separates a
-    maneuver from noise, which a single innovation does not. Unbounded: a rule base takes values
+    second signal. Smoothing reduces the noise in s, but not a lag behind the target. So s separates
+    a maneuver from noise, which a single innovation does not. Unbounded: a rule base takes values
     outside its universe at the nearest end.
 
     Parameters

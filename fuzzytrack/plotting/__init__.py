@@ -1,9 +1,9 @@
 """Pictures of rule bases, gains and tracks, with matplotlib.
 
-Every function returns the figure and its axes, draws into axes of yours when you give it some, and
-never shows anything: that is for ``matplotlib.pyplot.show()``, a notebook or ``figure.savefig()``.
+Every function returns the figure and its axes, and draws into axes of your own if you give it some.
+None of them shows the figure: use ``matplotlib.pyplot.show()``, a notebook or ``figure.savefig()``.
 A figure that a function makes belongs to pyplot, as with other libraries, and is closed by
-``matplotlib.pyplot.close(figure)``. Where pyplot is unwelcome, as in a server, give axes of a
+``matplotlib.pyplot.close(figure)``. Where pyplot must not be used, as in a server, give axes of a
 ``matplotlib.figure.Figure``.
 """
 

@@ -1,4 +1,4 @@
-"""What all pictures share: figures and axes, colors, legends, ticks."""
+"""Figures and axes, colors, legends and ticks of all pictures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fuzzytrack.fuzzy.system import FuzzySystem
 
 AxesArray = NDArray[np.object_]
 
-# Okabe and Ito (2008): told apart by people with any color vision; yellow is left out.
+# Okabe and Ito (2008): can be distinguished with any color vision; without yellow.
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = (
     "#0072B2",
     "#D55E00",
@@ -42,7 +42,7 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> None:
 
 
 def rules_of(rules: RuleBase | FuzzySystem) -> RuleBase:
-    """Rule base behind what a user gave."""
+    """Rule base that was given, or that of the fuzzy system that was given."""
     if isinstance(rules, RuleBase):
         return rules
     if isinstance(rules, FuzzySystem):
@@ -105,7 +105,8 @@ def legend_below(ax: Axes) -> None:
     handles, labels = ax.get_legend_handles_labels()
     box, figure = ax.get_position(), figure_of(ax)
     width, height = box.width * figure.get_figwidth() * 72, box.height * figure.get_figheight() * 72
-    # In points: so wide is a letter, and the line before the words; it may stand out a little.
+    # Widths in points: of a letter, and of the line before the words. The legend may be a little
+    # wider than the axes.
     columns = max(1, int(1.15 * width / (5.0 * max(map(len, labels)) + 42)))
     rows = -(-len(handles) // columns)
     ax.legend(
@@ -122,7 +123,7 @@ def ticks(low: float, high: float, count: int) -> list[float]:
     """About `count` round numbers, and both ends."""
     inside = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
     apart = 0.09 * (high - low)
-    # Zero as such, not what is left of a sum of steps.
+    # Exactly zero, without the rounding error of a sum of steps.
     tiny = 1e-9 * (high - low)
     between = [0.0 if abs(t) < tiny else float(t) for t in inside if low + apart < t < high - apart]
     return [low, *between, high]

@@ -1,4 +1,4 @@
-"""The stability triangle as the ground of a picture, and what is drawn on it."""
+"""The stability triangle as the background of a picture, and contours on it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def triangle(ax: Axes, limits: tuple[float, float] = (2.06, 4.12)) -> None:
 
 
 def graded(levels: Sequence[float] | Array) -> list[Any]:
-    """Colors from dark to light, short of the yellow that nobody can read on white."""
+    """Colors from dark to light, without the yellow that is unreadable on white."""
     return list(colormaps[shared.COLORMAP](np.linspace(0.0, 0.82, len(levels))))
 
 

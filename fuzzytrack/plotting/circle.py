@@ -1,4 +1,4 @@
-"""What gains cost on a circle, and which are best there."""
+"""Costs of gains for a target on a circle, and the best gains."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def plot_circle_gains(
     *,
     axes: Sequence[Axes] | None = None,
 ) -> tuple[Figure, NDArray[np.object_]]:
-    """Optimal gains for a circle against the weight of the noise, and their way in the plane.
+    """Optimal gains for a circle against the weight of the noise, also as a curve in the α-β plane.
 
     Parameters
     ----------
@@ -118,14 +118,14 @@ def plot_circle_gains(
     -----
     Llinas et al. (1998), Figs. 2.14, 2.15 and 2.16 (order 3). A thin line is a minimum that is no
     longer the least cost: it is then cheaper not to follow the circle at all. Further right there
-    is no minimum in the interior. The report's limit α = 0.0032, β = 0 is none.
+    is no minimum in the interior. The report's limit α = 0.0032, β = 0 does not exist.
     """
     if order not in (2, 3):
         raise ValueError(f"order must be 2 or 3, got {order!r}")
     weights = increasing("kappas", 10 ** np.linspace(-2, 3.6, 29) if kappas is None else kappas)
     rows = np.full((len(weights), 3), np.nan)
     best = np.zeros(len(weights), dtype=bool)
-    # Says what is wrong, if it is not the weight.
+    # Raises an error if something other than the weight is wrong.
     optimal_on_circle(angular_rate, dt, radius, float(weights[0]) ** 0.5, gamma=order == 3)
     for k, weight in enumerate(weights.tolist()):
         try:
@@ -133,7 +133,7 @@ def plot_circle_gains(
         except ValueError:  # the minimum has vanished
             continue
         rows[k], best[k] = found.gains, found.is_global
-    # The thick line ends where the minimum stops to be the least.
+    # The thick line ends where the minimum is no longer the least cost.
     thick = np.where(best[:, None], rows, np.nan)
     figure, (left, right) = shared.panels("axes", axes, 2, columns=2, size=(5.2, 4.6))
     for number, name in enumerate(("α", "β", "γ")[:order]):

@@ -1,4 +1,4 @@
-"""Simulated experiments: errors of trackers over many runs, and what one run looked like."""
+"""Simulated experiments: errors of trackers over many runs, and single runs."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ __all__ = [
 Unit = Literal["m", "km"]
 
 STYLES = ("-", "--", "-.", ":")
-# Curves that differ by more than this factor share no linear scale.
+# Curves that differ by more than this factor are drawn on a logarithmic scale.
 APART = 30.0
-# Points a curve of a distribution is drawn with; more than these nobody sees.
+# Number of points of a curve of a distribution; more would not be visible.
 POINTS = 400
-# Share of errors that a distribution shows of the worst tracker; outliers would squeeze the rest.
+# Share of the errors of the worst tracker that a distribution shows; outliers would squeeze the
+# rest.
 SHOWN = 0.99
 # Meters beyond which positions are labeled in kilometers.
 FAR = 5000.0
@@ -47,7 +48,7 @@ def plot_error_over_time(
     unit: str = "m",
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Error over time, one line a tracker, with the band that chance leaves open.
+    """Error over time, one line a tracker, with bands of its uncertainty.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def plot_error_over_time(
     Raises
     ------
     ValueError
-        If there is no tracker, shapes do not fit, or a band is that of no tracker.
+        If there is no tracker, shapes do not fit, or a band has the label of no tracker.
 
     Notes
     -----
@@ -113,7 +114,7 @@ def plot_trajectories(
     axes_names: Sequence[str] | None = None,
     ax: Axes | Sequence[Axes] | None = None,
 ) -> tuple[Figure, Axes | shared.AxesArray]:
-    """One run: where the target was, was seen and was predicted to be by each tracker.
+    """One run: true positions, plots and the predictions of each tracker.
 
     Parameters
     ----------
@@ -197,7 +198,7 @@ class _Run:
         def on(positions: Array) -> list[Array]:
             return [self.time if k is None else positions[:, k] for k in axes]
 
-        # Broad and pale, so that what lies on it stays visible.
+        # Broad and pale, so that other lines on it stay visible.
         ax.plot(*on(self.truth), color="0.82", linewidth=5, label="true", zorder=1)
         ax.plot(
             *on(self.plots),
@@ -326,7 +327,7 @@ def plot_consistency(
     what: str = "NIS, mean over runs",
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Normalized squared errors over time, one line a tracker, and where they should lie.
+    """Normalized squared errors over time, one line a tracker, and the range of a consistent one.
 
     Parameters
     ----------
@@ -355,8 +356,8 @@ def plot_consistency(
 
     Notes
     -----
-    Above the band a filter trusts itself too much, below it too little. The scale is logarithmic
-    where one tracker is far off.
+    Above the band the covariances of a filter are too small, below it too large. The scale is
+    logarithmic where one tracker is far off.
     """
     steps = _times(time)
     curves = _curves("statistics", statistics, len(steps))

@@ -1,4 +1,4 @@
-"""The plane of α and β: which gains a tracker visited, and where they are stable."""
+"""The plane of α and β: gains that a tracker used, and where gains are stable."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def plot_gain_plane(
     inset: bool | None = None,
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Plane of α and β: the gains visited, inside the stability triangle.
+    """Plane of α and β: gains that were used, inside the stability triangle.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def plot_gain_plane(
     plane.spines[["top", "right"]].set_visible(False)
     interesting = [*clouds.values(), *marks.values(), *outline.values()]
     points = np.concatenate([np.empty((0, 2)), *(np.reshape(p, (-1, 2)) for p in interesting)])
-    # What an unstable tracker visited may lie far outside, and is not what an inset is for.
+    # The gains of an unstable tracker may lie far outside; an inset does not show them.
     inside = points[(points >= 0).all(axis=1) & (points <= (2.0, 4.0)).all(axis=1)]
     if len(inside):
         low, high = inside.min(axis=0), inside.max(axis=0)

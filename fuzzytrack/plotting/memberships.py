@@ -92,7 +92,7 @@ def _outline(
         (value,) = fuzzy_set.parameters
         return np.array([value, value]), np.array([0.0, 1.0])
     corners = [p for p in fuzzy_set.breakpoints() if low <= p <= high]
-    # A vertical flank needs its foot just beside its top.
+    # A vertical flank needs a point at its lower end beside that at its upper end.
     beside = [q for p in corners for q in (np.nextafter(p, low), np.nextafter(p, high))]
     x = np.unique([*np.linspace(low, high, POINTS), *corners, *beside])
     return x, fuzzy_set.membership(x)

@@ -1,4 +1,4 @@
-"""How much of the noise gains pass on."""
+"""Noise in the outputs of filters, over their gains."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def _rising_root(function: Any, level: float, top: Array) -> Array:
 def plot_noise_against_lag(
     mark: dict[str, tuple[float, float]] | None = None, *, ax: Axes | None = None
 ) -> tuple[Figure, Axes]:
-    """What every choice of gains trades: noise of the prediction against lag in a maneuver.
+    """Trade-off of all gains between noise of the prediction and lag in a maneuver.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ STYLES = ("-", "--", "-.", ":")
 
 
 def plot_optimal_curves(*, ax: Axes | None = None) -> tuple[Figure, Axes]:
-    """Curves in the plane of α and β on which optimal gains lie, whatever the weights.
+    """Curves in the plane of α and β on which optimal gains lie, for any weights.
 
     Parameters
     ----------
@@ -114,9 +114,9 @@ def plot_optimal_gains(
 
     Notes
     -----
-    Llinas et al. (1998), Figs. 2.18 and 2.19 (order 3). The indices hold all of velocity,
-    acceleration, sampling time, noise and its weight: `fuzzytrack.gains.velocity_index` and so on.
-    More weight on the noise is a smaller index.
+    Llinas et al. (1998), Figs. 2.18 and 2.19 (order 3). The indices combine velocity, acceleration,
+    sampling time, noise and its weight: `fuzzytrack.gains.velocity_index` and so on. More weight on
+    the noise is a smaller index.
     """
     if order not in (2, 3):
         raise ValueError(f"order must be 2 or 3, got {order!r}")
@@ -202,9 +202,9 @@ def plot_motion_gains(
     Notes
     -----
     Llinas et al. (1998), Figs. 2.20 and 2.21 (order 3). The cost is that of transient and noise.
-    Without γ the transient leaves out the steady lag: with the smallest acceleration in the
-    direction of the velocity the best α-β filter jumps to one that has no transient but a great
-    lag; a decelerating target knows no jump. With γ neither sign matters.
+    Without γ the transient does not include the steady lag: at the smallest acceleration in the
+    direction of the velocity, the best α-β filter jumps to one without transient but with a large
+    lag. For a decelerating target there is no jump. With γ the signs do not matter.
     """
     if order not in (2, 3):
         raise ValueError(f"order must be 2 or 3, got {order!r}")
@@ -261,7 +261,7 @@ def _motion_curve(
             ).gains[:2]
             for acceleration in chosen.tolist()
         ]
-        if style == "--":  # without a jump from the circle on
+        if style == "--":  # without a jump, from the circle on
             pairs.append((float(start[0]), float(start[1])))
         ax.plot(
             *np.reshape(pairs, (-1, 2)).T, color=color, ls=style, lw=1.6, label=f"{label}, {text}"

@@ -26,12 +26,12 @@ LABELS = {
     "gains": ("position gain α", "velocity gain β", "acceleration gain γ"),
     "abc": ("a", "b", "c (third pole at −c)"),
 }
-# Beside the limit 2 of a or α the acceleration gain is the steepest.
+# The acceleration gain is steepest near the limit 2 of a or α.
 LIMITS = {"gains": ((0, 2), (0, 4), (0, 16)), "abc": ((0, 2), (0, 4), (-1, 1))}
 
 
 def plot_stability_regions(*, ax: Axes | None = None) -> tuple[Figure, Axes]:
-    """Stability triangle of the α-β filter, with how it answers a step in each region.
+    """Stability triangle of the α-β filter, with its response to a step in each region.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def plot_stability_volume(
     *,
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Volume of stable gains of the α-β-γ filter, or the prism that it is in a, b and c.
+    """Volume of stable gains of the α-β-γ filter, or the corresponding prism in a, b and c.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ def plot_surface(
     method : {"exact", "relation", "table"}, optional
         As for `fuzzytrack.fuzzy.system.FuzzySystem`; that of the system, ``exact`` for a rule base.
     style : {"surface", "contour"}
-        In perspective, or as a map.
+        In perspective, or as a contour map.
     inputs : (str, str), optional
         The two inputs to draw over; the first two unless given.
     at : mapping, optional
@@ -116,7 +116,7 @@ def plot_gain_surfaces(
     ----------
     rules : RuleBase or FuzzySystem
         With outputs ``stiffness`` and ``damping``, or ``stiffness`` alone with the damping of
-        Kalata's gains, drawn as α and β by way of the w-domain; or with outputs ``alpha`` and
+        Kalata's gains, converted to α and β in the w-domain; or with outputs ``alpha`` and
         ``beta``, and maybe ``gamma``, drawn as they are.
     points : int
         Points an axis, at least 2.
@@ -136,7 +136,7 @@ def plot_gain_surfaces(
     Raises
     ------
     ValueError
-        If the outputs are no gains, or an argument is not one of the allowed ones.
+        If the outputs are not gains, or an argument is not one of the allowed ones.
 
     Notes
     -----
@@ -273,7 +273,7 @@ def _perspective(ax: Any, picture: _Picture) -> None:
 
 
 def _range(values: Array) -> tuple[float, float]:
-    """Range of the finite values, opened a little where they are all the same."""
+    """Range of the finite values; a little wider if they are all the same."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     if high - low <= 1e-9 * max(abs(low), abs(high)):

@@ -1,4 +1,4 @@
-"""Tracks: where a target was, was seen and was thought to be."""
+"""Tracks: true, measured and estimated positions."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def plot_track(
     Raises
     ------
     ValueError
-        If `track` is missing, too much or out of range, or shapes do not fit.
+        If `track` is missing, not allowed or out of range, or shapes do not fit.
 
     Notes
     -----
@@ -180,8 +180,8 @@ def plot_errors(
     Raises
     ------
     ValueError
-        If nothing is given, `track` is too much or out of range, shapes do not fit, or a mean is
-        asked of tracks that have times of their own.
+        If no result is given, `track` is not allowed or out of range, shapes do not fit, or tracks
+        with different times have no mean.
 
     Notes
     -----

@@ -22,26 +22,26 @@ Kernel = Callable[[Any, Any, float, Any, Memory], tuple[float, float, float, flo
 class GainScheduler(ABC):
     """Chooses the gains of a tracker, update by update.
 
-    A scheduler is immutable and shared between tracks; what it remembers of a track lives in the
-    track's state, as a tuple of floats that its kernel takes and returns. It must pickle.
+    A scheduler is immutable and shared between tracks. Its memory of a track is in the track's
+    state: a tuple of floats that its kernel takes and returns. It must pickle.
 
     Attributes
     ----------
     source : str
         Paper, or other origin.
     coupled : bool
-        Whether the kernel sees all axes of a track at once and gives them one set of gains.
+        Whether the kernel gets all axes of a track at once and returns one set of gains for them.
     needs_sigma : bool
         Whether the kernel reads the standard deviation of the plot.
     sees_every_step : bool
         Whether the kernel also follows the steps of a track that need no gains; see `kernel`.
     uses_acceleration : bool
-        Whether gamma can be other than 0. Without acceleration a tracker has less to do.
+        Whether gamma can be other than 0. Without acceleration a tracker is faster.
     may_be_unstable : bool
         Whether the gains for a plot may lie outside of the stability region, on purpose;
-        `fuzzytrack.testing.check_scheduler` then does not look at it.
+        `fuzzytrack.testing.check_scheduler` then does not check it.
     sigma_w : float or None
-        Standard deviation (m) that stands for that of every plot, if the scheduler has one.
+        Standard deviation of all plots (m), if the scheduler has one.
     """
 
     source: ClassVar[str] = ""
@@ -71,13 +71,13 @@ class GainScheduler(ABC):
         with one float an axis.
 
         Where a plot is missing, or a two-point start still waits for the second one, the function
-        is called with zeros (and a sigma of 1) and its answer is dropped; so NaN never arrives as
-        an innovation.
+        is called with zeros (and a sigma of 1) and its result is not used; so an innovation is
+        never NaN.
 
         A scheduler that sets `sees_every_step` keeps its memory also at those steps, from the first
         plot of a track on; the gains are still dropped. Its kernel gets an innovation and a change
-        of 0, and as sigma that of the plot at the start of a track (the first plot with a ``dt`` of
-        no meaning), but infinity where a plot is missing.
+        of 0, and as sigma that of the plot at the start of a track (at the first plot ``dt`` has no
+        meaning), but infinity where a plot is missing.
 
         It runs in plain Python and is compiled by Numba, so it may use numbers,
         tuples, `math`, other such functions, and constants of the enclosing scope; not the
@@ -86,7 +86,7 @@ class GainScheduler(ABC):
         Parameters
         ----------
         n_axes : int
-            Axes that the kernel sees at once: 1 unless the scheduler is coupled.
+            Axes that the kernel gets at once: 1 unless the scheduler is coupled.
         """
 
     def initial_memory(self, n_axes: int) -> Memory:
@@ -111,8 +111,8 @@ class GainScheduler(ABC):
         Returns
         -------
         ndarray or float
-            The variance without that of the plot to come, shape (lanes,), or of a coupled
-            scheduler (n_axes, lanes); NaN where it is not known yet.
+            The variance without that of the next plot, shape (lanes,), or for a coupled scheduler
+            (n_axes, lanes); NaN where it is not known yet.
         """
         return math.nan
 

@@ -1,4 +1,4 @@
-"""Schedulers by name: what a user may write for one."""
+"""Schedulers by name: the texts that name one."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def make_scheduler(spec: str) -> GainScheduler:
     ------
     ValueError
         If there is no such name or parameter, a parameter is missing, or a value does not fit;
-        says what there is.
+        lists what is allowed.
     RuleBaseError
         If a rule base cannot be read, or cannot schedule gains.
 
@@ -63,7 +63,7 @@ def make_scheduler(spec: str) -> GainScheduler:
     try:
         return take_scheduler(name, options)
     except RuleBaseError:
-        raise  # it says where in the file
+        raise  # its message has the place in the file
     except (TypeError, ValueError) as error:
         raise ValueError(f"scheduler {spec!r}: {error}") from error
 

@@ -84,28 +84,28 @@ class FuzzyScheduler(GainScheduler):
         _ = self.inference
 
     def __getstate__(self) -> dict[str, Any]:
-        # Tables are large, and both are quickly made again where they are wanted.
+        # Tables are large, and both are quickly made again where they are needed.
         made = ("system", "inference")
         return {key: value for key, value in vars(self).items() if key not in made}
 
     @property
     def normalization(self) -> Normalization:
-        """What makes the inputs of the rule base."""
+        """Normalization that makes the inputs of the rule base."""
         return self.settings.normalization
 
     @property
     def outputs(self) -> GainOutputs:
-        """What makes gains of its outputs."""
+        """Conversion of its outputs to gains."""
         return self.settings.outputs
 
     @property
     def coupled(self) -> bool:  # type: ignore[override]
-        """Whether one set of gains serves all axes, as the normalization says."""
+        """Whether all axes share one set of gains; from the normalization."""
         return self.normalization.coupled
 
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
-        """Whether plots need a standard deviation, as the normalization says."""
+        """Whether plots need a standard deviation; from the normalization."""
         return self.normalization.needs_sigma
 
     @property

@@ -1,7 +1,6 @@
 """Which outputs of a rule base are gains of a tracker, and how they become α, β and γ.
 
-The scheduler, the certificate of stability, the review, the pictures and the command line all ask
-here.
+The scheduler, the certificate of stability, the review, the pictures and the command line use it.
 """
 
 from __future__ import annotations
@@ -25,14 +24,14 @@ Conversion = Callable[[tuple[float, ...]], tuple[float, float, float, float]]
 
 @dataclass(frozen=True)
 class GainOutputs(ABC):
-    """Outputs of a rule base that together say which gains a tracker uses.
+    """Outputs of a rule base that together determine the gains of a tracker.
 
     Attributes
     ----------
     names : tuple of str
         Names of the outputs.
     setting : str
-        What the scheduler setting ``gains`` calls them.
+        Their name in the scheduler setting ``gains``.
     """
 
     setting: ClassVar[str]
@@ -159,7 +158,7 @@ GAIN_SETTINGS = tuple(dict.fromkeys(outputs.setting for outputs in _ALL))
 
 
 def find_gain_outputs(output_names: Collection[str]) -> GainOutputs | None:
-    """What the outputs of a rule base are as gains; None if they are no gains."""
+    """Outputs of a rule base that are gains; None if they are not gains."""
     return next((found for found in _ALL if set(found.names) == set(output_names)), None)
 
 

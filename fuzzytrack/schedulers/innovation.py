@@ -68,9 +68,9 @@ class InnovationScheduler(GainScheduler):
 
     Notes
     -----
-    Kim & Lee, Eqs. 5 to 17. The default assumes no size of a maneuver but the floor, does not
-    depend on units, and its gains become small again after a maneuver. Where the target's
-    acceleration is known, fixed gains for it are as good.
+    Kim & Lee, Eqs. 5 to 17. The default assumes nothing about the size of a maneuver except the
+    floor, does not depend on units, and its gains become small again after a maneuver. Where the
+    target's acceleration is known, fixed gains for it are as good.
 
     T is the time since the last plot that was seen, and β is for a step of that length; the paper
     has no missed plots. With the last time step instead, the larger innovations after a gap would

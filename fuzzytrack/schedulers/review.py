@@ -17,11 +17,11 @@ from fuzzytrack.schedulers.gain_outputs import gains_of
 
 __all__ = ["Review", "explanation", "grid_table", "review"]
 
-# Points of the grid on which a rule base is looked at, over all inputs.
+# Points of the grid on which a rule base is evaluated, over all inputs.
 _POINTS = 10_201
 _MAX_CELLS = 1_000_000
 _TABLE_INPUTS = 2
-# Difference that counts as none, relative to the largest value.
+# Largest difference that counts as none, relative to the largest value.
 _EQUAL = 1e-9
 
 

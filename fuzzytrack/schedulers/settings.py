@@ -1,6 +1,6 @@
-"""Scheduler settings of a rule base: the keys and words there are, and what is made of them.
+"""Scheduler settings of a rule base: their keys and words, and how they are read.
 
-The fuzzy engine keeps the settings unread, each word with its place in the file.
+The fuzzy engine does not interpret the settings; it keeps each word with its place in the file.
 """
 
 from __future__ import annotations

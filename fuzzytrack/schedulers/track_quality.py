@@ -1,4 +1,4 @@
-"""Gains by the quality of a track, which plots raise and misses lower."""
+"""Gains from the quality of a track, which plots raise and missed plots lower."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trackers, their states and results, and what a tracker of your own is made of."""
+"""Trackers, their states and results, and the base classes for trackers of your own."""
 
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram

@@ -28,12 +28,12 @@ class AlphaBetaTracker(LaneTracker):
     ----------
     scheduler : GainScheduler or str
         Chooses the gains; a text names one, as ``"fixed:alpha=0.5:beta=0.2"`` or a rule base, see
-        `fuzzytrack.schedulers.catalog.make_scheduler`. An ordinary one works on each axis by
-        itself; a coupled one sees all axes of a track and gives them one set of gains.
+        `fuzzytrack.schedulers.catalog.make_scheduler`. An ordinary one chooses gains for each axis
+        separately; a coupled one uses all axes of a track and gives them one set of gains.
     start : {"two-point", "one-point"}
-        ``two-point`` takes position from the second plot and velocity from the first two (the
-        papers' way: predictions begin with the third plot). ``one-point`` takes position from the
-        first plot with velocity 0, and asks the scheduler from the second on.
+        ``two-point`` takes position from the second plot and velocity from the first two (as in the
+        papers: predictions begin with the third plot). ``one-point`` takes position from the first
+        plot with velocity 0, and uses the scheduler from the second plot on.
 
     Raises
     ------
@@ -73,17 +73,17 @@ class AlphaBetaTracker(LaneTracker):
 
     @property
     def coupled(self) -> bool:  # type: ignore[override]
-        """Whether one set of gains serves all axes, as the scheduler says."""
+        """Whether all axes share one set of gains; from the scheduler."""
         return self.scheduler.coupled
 
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
-        """Whether plots need a standard deviation, as the scheduler says."""
+        """Whether plots need a standard deviation; from the scheduler."""
         return self.scheduler.needs_sigma
 
     @property
     def sigma_w(self) -> float | None:  # type: ignore[override]
-        """Standard deviation that stands for that of every plot, as the scheduler says (m)."""
+        """Standard deviation of all plots (m), if the scheduler has one."""
         return self.scheduler.sigma_w
 
     @property

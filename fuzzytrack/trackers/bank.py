@@ -1,4 +1,4 @@
-"""A bank of fixed α-β filters in parallel, mixed or chosen among by their innovations."""
+"""A bank of fixed α-β filters in parallel, averaged or selected by their innovations."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class ParallelBank(LaneTracker):
         the one whose prediction is nearest to the plot that it predicts: so it is not causal, can
         only `run`, and its innovations are no measure of its errors.
     forget : float
-        What is left of a score after a plot, 0 <= forget <= 1; ``last`` and ``hindsight`` do not
+        Factor of the old score at each plot, 0 <= forget <= 1; ``last`` and ``hindsight`` do not
         use it.
 
     Raises

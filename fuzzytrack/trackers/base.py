@@ -1,4 +1,4 @@
-"""What a tracker is."""
+"""The protocol of trackers, and their registry."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Tracker(Protocol):
     def predict(
         self, state: TrackState, t: ArrayLike, sigma: ArrayLike | None = None
     ) -> Prediction:
-        """Where a track is expected at a later time; see `fuzzytrack.AlphaBetaTracker.predict`."""
+        """Predicted position at a later time; see `fuzzytrack.AlphaBetaTracker.predict`."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Trackers by name: what a user may write for one, and what there is to choose from."""
+"""Trackers by name: the texts that name one, and the list of all names."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ __all__ = [
 
 @dataclass(frozen=True)
 class CatalogEntry:
-    """Something that trackers are made of, by name.
+    """A tracker, or a part of one, that has a name.
 
     Attributes
     ----------
     kind : {"rule base", "scheduler", "tracker", "normalization"}
     name : str
         As a user writes it: for a normalization in the settings of a rule base, for the others
-        where a tracker is asked for.
+        where a tracker is needed.
     parameters : tuple of str
         Parameters that it takes after its name; those with a default as ``name=default``.
     source : str
         Paper, or other origin.
     package : str
-        Package that brings it; of a script, its file.
+        Package that it comes from; for a script, its file.
     """
 
     kind: str
@@ -87,12 +87,12 @@ def as_tracker(tracker: Tracker | str) -> Tracker:
 
 
 def as_lane_tracker(tracker: Tracker | str) -> LaneTracker:
-    """As `as_tracker`, for what tracks a recording piece by piece.
+    """As `as_tracker`, for a recording that is tracked piece by piece.
 
     Raises
     ------
     ValueError
-        If the tracker has no state with which it can go on from piece to piece.
+        If the tracker has no state with which it can continue from piece to piece.
     """
     found = as_tracker(tracker)
     if not isinstance(found, LaneTracker):
@@ -127,7 +127,7 @@ def make_tracker(spec: str) -> Tracker:
     ------
     ValueError
         If there is no such name or parameter, a parameter is missing, or a value does not fit;
-        says what there is.
+        lists what is allowed.
     RuleBaseError
         If a rule base cannot be read, or cannot schedule gains.
 
@@ -143,7 +143,7 @@ def make_tracker(spec: str) -> Tracker:
     try:
         tracker = _make(name, options)
     except RuleBaseError:
-        raise  # it says where in the file
+        raise  # its message has the place in the file
     except (TypeError, ValueError) as error:
         raise ValueError(f"tracker {spec!r}: {error}") from error
     if not isinstance(tracker, Tracker):

@@ -80,7 +80,7 @@ class CompiledStep:
             buffer = self._buffers.pop()
         except IndexError:
             buffer = aligned(rows.total * BLOCK)
-        # The states of a stream share their shape; to ask an array for its own takes longer.
+        # The states of a stream share their shape; reading that of an array takes longer.
         sizes = self._sizes
         if sizes[0] is not shape:
             sizes = self._sizes = (shape, lanes.shape)

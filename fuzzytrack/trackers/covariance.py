@@ -26,7 +26,7 @@ class TrackCovariance:
     predicted, filtered : ndarray, shape (n_steps, ...batch, n_axes, n, n)
         Covariance of the error before and after the plot is used; NaN until velocity is known.
     innovation_variance : ndarray, shape (n_steps, ...batch, n_axes)
-        S (m²), shaped as the plots; NaN where there is no innovation or nothing is known of it.
+        S (m²), shaped as the plots; NaN where there is no innovation or its variance is unknown.
     nis : ndarray, shape (n_steps, ...batch)
         Normalized innovation squared, the sum of e²/S over the axes that have one; NaN where none
         has. If model and noise are right, its mean is `axes`. Plots of one axis without an axis of
@@ -50,7 +50,7 @@ def track_covariance(
     velocity_sigma: float | None = None,
     acceleration_sigma: float | None = None,
 ) -> TrackCovariance:
-    """Exact covariance of what a tracker estimated, whatever gains it used.
+    """Exact covariance of the estimates of a tracker, for any gains.
 
     Parameters
     ----------
@@ -63,11 +63,11 @@ def track_covariance(
         for a tracker with γ of the change of acceleration at each step.
     velocity_sigma : float, optional
         Standard deviation of a new track's velocity (m/s), >= 0. Needed after a one-point start,
-        unless the first correction replaces the velocity altogether; a two-point start makes no
-        use of it.
+        unless the first correction replaces the velocity altogether; a two-point start does not use
+        it.
     acceleration_sigma : float, optional
         Standard deviation of a new track's acceleration (m/s²), >= 0. Needed by a tracker with γ;
-        given for one without, the target is modeled with acceleration all the same.
+        if given for a tracker without γ, the target is modeled with acceleration too.
 
     Returns
     -------
@@ -77,7 +77,8 @@ def track_covariance(
     ------
     ValueError
         If a standard deviation is out of its range, does not broadcast or is missing, the result
-        goes on from a state or is in single precision, or its states do not follow from its gains.
+        continues from a state or is in single precision, or its states do not follow from its
+        gains.
 
     Notes
     -----
@@ -172,7 +173,7 @@ def _plot_variances(sigma: ArrayLike, plots: Array) -> Array:
 
 
 def _time_steps(result: TrackResult) -> Array:
-    """T of every step, to broadcast with the plots; 0 for the first."""
+    """T of every step, broadcasting with the plots; 0 for the first."""
     dts = np.diff(result.time, axis=0, prepend=result.time[:1])
     return dts.reshape(dts.shape + (1,) * (result.measured.ndim - dts.ndim))
 
@@ -186,7 +187,7 @@ def _gain_vectors(result: TrackResult, dts: Array, used: Mask, order: int) -> Ar
 
 
 def _check_recursion(result: TrackResult, dts: Array, gains: Array) -> None:
-    """Gains tell all only of an α-β(-γ) recursion that keeps its acceleration."""
+    """Raise ValueError unless the states follow from the gains by the α-β(-γ) recursion."""
     t = dts[1:]
     x, v, a = (s[:-1] for s in (result.filtered, result.velocity, result.acceleration))
     running = ~np.isnan(result.predicted[1:])
@@ -201,8 +202,8 @@ def _check_recursion(result: TrackResult, dts: Array, gains: Array) -> None:
     for actual, wanted in expected:
         if not np.allclose(actual[running], wanted[running], rtol=1e-6, atol=1e-9):
             raise ValueError(
-                "result: its states do not follow from its gains; a covariance can be told only of "
-                "an alpha-beta(-gamma) recursion that keeps its acceleration"
+                "result: its states do not follow from its gains; covariances can be computed only "
+                "for an alpha-beta(-gamma) recursion that keeps its acceleration"
             )
 
 
@@ -246,7 +247,7 @@ def _check_whole(result: TrackResult, first: NDArray[np.int_], index: NDArray[np
     early |= ~np.isnan(result.predicted) & (index <= first)
     early |= (result.velocity != 0) & (index == first)
     if early.any():
-        raise ValueError("result: it goes on from a state; needed are tracks from their first plot")
+        raise ValueError("result: it continues from a state; give tracks from their first plot on")
 
 
 def _seen(result: TrackResult) -> Mask:
@@ -255,8 +256,8 @@ def _seen(result: TrackResult) -> Mask:
     whole = seen.all(axis=-1, keepdims=True) if seen.ndim > 1 else seen
     if result.state is None and (seen != whole).any():
         raise ValueError(
-            "result: a plot lacks a coordinate, and without its state (as from run_tracks) nobody "
-            "knows whether the others counted; run that track by itself"
+            "result: a plot lacks a coordinate, and without its state (as from run_tracks) "
+            "it is unknown whether the others counted; run that track by itself"
         )
     coupled = result.state is not None and result.state.rows.n_axes > 1
     return seen & whole if coupled else seen

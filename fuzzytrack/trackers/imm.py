@@ -36,12 +36,13 @@ _FLOOR = 1e-12
 @trackers.register("imm")
 @dataclass(frozen=True, repr=False)
 class InteractingModels(LaneTracker):
-    """Two Kalman filters, for a quiet and for a maneuvering target, and the odds between them.
+    """Two Kalman filters, for a quiet and for a maneuvering target, and their probabilities.
 
     The quiet model is `fuzzytrack.schedulers.KalmanCV`, the maneuvering one the same with more
-    noise, or `fuzzytrack.schedulers.KalmanCA`. From step to step the target keeps its model with a
-    given probability. Each filter starts a step from a mixture of both estimates. Each plot raises
-    the probability of the model that predicted it better. Estimates are means over the models.
+    noise, or `fuzzytrack.schedulers.KalmanCA`. From one step to the next, the target stays in its
+    model with a given probability. Each filter starts a step from a mixture of both estimates. Each
+    plot raises the probability of the model that predicted it better. Estimates are means over the
+    models.
 
     Parameters
     ----------
@@ -52,14 +53,14 @@ class InteractingModels(LaneTracker):
         The same of a maneuvering target, > 0; with `maneuver` "ca" that of the change of its
         acceleration at a step (m/s²).
     quiet_stay, maneuver_stay : float
-        Probability, 0 to 1, that a target keeps to its model for a step, however long the step.
+        Probability, 0 to 1, that a target stays in its model for a step of any length.
     maneuver : {"ca", "cv"}
         Nearly constant acceleration, or nearly constant velocity.
     joint : bool
         Whether the axes of a track share their probabilities: the likelihood of a plot is then the
-        product over its axes. Otherwise each axis is by itself.
+        product over its axes. Otherwise each axis has its own.
     sigma_w : float, optional
-        Standard deviation of all plots (m), > 0. Unless given, each plot brings its own.
+        Standard deviation of all plots (m), > 0. Unless given, the `sigma` of each plot is used.
     velocity_sigma : float, optional
         Standard deviation of a new track's velocity (m/s), > 0, with mean 0. Unless given, the
         velocity comes from the first two plots alone.
@@ -141,19 +142,19 @@ class InteractingModels(LaneTracker):
 
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
-        """Whether plots need a standard deviation: unless `sigma_w` stands for all."""
+        """Whether plots need a standard deviation: unless `sigma_w` is given."""
         return self.sigma_w is None
 
     @property
     def start_probability(self) -> float:
-        """Probability that a new track maneuvers: `maneuver_start`, or what stands for it."""
+        """Probability that a new track maneuvers: `maneuver_start`, or its default."""
         if self.maneuver_start is not None:
             return self.maneuver_start
         leave, settle = 1.0 - self.quiet_stay, 1.0 - self.maneuver_stay
         return leave / (leave + settle) if leave + settle > 0.0 else 0.5
 
     def program(self, n_axes: int) -> LaneProgram:
-        """What a lane remembers, and its step; see `LaneTracker.program`."""
+        """Memory and step of a lane; see `LaneTracker.program`."""
         rows = imm_rows(n_axes)
         start = self.start_probability
         memory = (1.0 - start, start, *(0.0,) * (rows.n_memory - PROBABILITIES))

@@ -46,7 +46,7 @@ class ModelPair:
         Variance of the process noise of a step: of the acceleration (m²/s⁴), or of its change if
         the maneuvering model `accelerates`.
     quiet_stay, maneuver_stay : float
-        Probability that the target keeps to its model for a step.
+        Probability that the target stays in its model for a step.
     accelerates : bool
         Whether the maneuvering model has an acceleration.
     floor : float
@@ -78,9 +78,9 @@ def imm_rows(n_axes: int) -> Rows:
 def _exp(x: float) -> float:
     """Exponential for -300 <= x <= 300, to a relative 1e-13.
 
-    Compilers take theirs from one library or another, which differ in the last bit; this one is the
-    same everywhere, and is worked out for neighboring lanes at once. It is the series of
-    exp(x/1024) - 1, squared up ten times without losing what is small.
+    Compilers use different libraries for it, which differ in the last bit; this one is the same
+    everywhere, and is computed for neighboring lanes at once. It is the series of exp(x/1024) - 1,
+    squared ten times without loss of small terms.
     """
     r = (x if x > 0.0 else -x) / 1024.0
     y = 1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r / 479001600))
@@ -170,7 +170,7 @@ def _corrected(
         n11,
         n12,
         n13,
-        # Rounding after a long gap may take more than there is.
+        # After a long gap rounding could make it negative.
         n22 if n22 > 0.0 else 0.0,
         n23,
         n33 if n33 > 0.0 else 0.0,

@@ -48,7 +48,7 @@ class LaneTracker(ABC):
     needs_sigma : bool
         Whether plots need a standard deviation.
     sigma_w : float or None
-        Standard deviation (m) that stands for that of every plot, if the tracker has one.
+        Standard deviation of all plots (m), if the tracker has one.
     """
 
     coupled: bool = False
@@ -95,9 +95,9 @@ class LaneTracker(ABC):
         sigma : array_like, optional
             Standard deviation of the plots (m), broadcast against `z`; needed by some schedulers.
         state : TrackState, optional
-            State from which to go on; a new track unless given.
+            State from which to continue; a new track unless given.
         keep : sequence of str, optional
-            What the result is to hold, out of `fuzzytrack.trackers.result.KEPT`: predicted,
+            Outputs to keep in the result, from `fuzzytrack.trackers.result.KEPT`: predicted,
             filtered, velocity, acceleration, innovation, gains. All of it unless given. Less is
             faster, and takes less memory.
         threads : int, optional
@@ -105,8 +105,8 @@ class LaneTracker(ABC):
             do not depend on it.
         dtype : dtype
             np.float64, or np.float32 for half the memory and more speed: plots and results are
-            then rounded to 7 digits, and so is every operation, so give coordinates from an origin
-            nearby. Such a run is always compiled.
+            then rounded to 7 digits, and so is every operation, so choose an origin near the plots.
+            Such a run is always compiled.
 
         Returns
         -------
@@ -191,7 +191,7 @@ class LaneTracker(ABC):
     def predict(
         self, state: TrackState, t: ArrayLike, sigma: ArrayLike | None = None
     ) -> Prediction:
-        """Where a track, or a batch of tracks, is expected at a later time; the state stays.
+        """Predict a track, or a batch of tracks, to a later time; the state does not change.
 
         Parameters
         ----------
@@ -201,7 +201,7 @@ class LaneTracker(ABC):
             Time (s), common or each track's own. It must be later than that of the state: a plot
             of the same time could not be used by `step`.
         sigma : array_like, optional
-            Standard deviation of the plots to come (m), broadcast against the positions, for
+            Standard deviation of the next plots (m), broadcast against the positions, for
             `innovation_variance`; the tracker's `sigma_w` unless given.
 
         Returns
@@ -255,8 +255,8 @@ class LaneTracker(ABC):
         Returns
         -------
         ndarray or float
-            The variance without that of the plot to come, shape (n_axes, lanes) or, where a lane
-            is an axis or its axes have it in common, (lanes,).
+            The variance without that of the next plot, shape (n_axes, lanes) or, where a lane is an
+            axis or its axes have it in common, (lanes,).
         """
         return np.nan
 
@@ -280,11 +280,11 @@ class LaneTracker(ABC):
 
     @cached_property
     def _compiled_steps(self) -> dict[int, CompiledStep]:
-        """Short ways to a next state, by the axes of a lane."""
+        """Compiled steps, by the number of axes of a lane."""
         return {}
 
     def _new_compiled_step(self, state: TrackState) -> CompiledStep | None:
-        """Short way from states like this one, if the tracker is compiled and the state its own."""
+        """Compiled step from states like this one; None if there is none for them."""
         n_axes = PlotLayout.of((0, *state.shape), self.coupled).lane_axes
         core = runner(self, n_axes)
         if core.own_step is None or core.rows != state.rows:
@@ -335,7 +335,7 @@ class LaneTracker(ABC):
         return plot_sigmas(sigma, plots, self.name if self.needs_sigma else None)
 
 
-# The cache is asked by identity first, since comparing two rule bases takes longer than a step.
+# The cache is looked up by identity first, since comparing two rule bases takes longer than a step.
 @dataclass(frozen=True, eq=False)
 class _Identity:
     tracker: LaneTracker
@@ -360,7 +360,7 @@ def runner(tracker: LaneTracker, n_axes: int) -> Runner:
 
 
 def announce(tracker: object, n_axes: int, coordinates: int) -> None:
-    """Tell a tracker of a job in many parts, so that it is compiled from the first of them.
+    """Announce a job in many parts to a tracker, so that it is compiled for the first of them.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where a track is expected at a later time, and how sure that is."""
+"""Predicted state of a track at a later time, with its variance."""
 
 from __future__ import annotations
 

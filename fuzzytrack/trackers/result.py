@@ -15,7 +15,7 @@ from fuzzytrack.trackers.state import Gains, TrackState
 __all__ = ["KEPT", "TrackResult", "checked_keep"]
 
 
-#: What a run may be asked to keep.
+#: Outputs that a run can keep.
 KEPT = ("predicted", "filtered", "velocity", "acceleration", "innovation", "gains")
 
 
@@ -23,7 +23,7 @@ KEPT = ("predicted", "filtered", "velocity", "acceleration", "innovation", "gain
 class TrackResult:
     """Tracks over time, as arrays: time first, axis of space last, batch between.
 
-    What a run was not asked to keep is missing; to ask for it raises an AttributeError.
+    Outputs that the run did not keep are missing; reading one raises an AttributeError.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class TrackResult:
     gains : Gains
         The gains used; NaN where none were.
     state : TrackState
-        State after the last step, from which to go on; None if there was no step.
+        State after the last step, from which a run can continue; None if there was no step.
     """
 
     time: Array
@@ -78,7 +78,7 @@ class TrackResult:
 
     @property
     def kept(self) -> tuple[str, ...]:
-        """What of `KEPT` is there."""
+        """Names of the outputs that were kept."""
         return tuple(name for name in KEPT if name in self.__dict__)
 
     @property

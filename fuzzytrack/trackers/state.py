@@ -1,4 +1,4 @@
-"""State of a track: a value that can be kept, pickled, sent away and resumed."""
+"""State of a track: a value that can be kept, pickled and continued elsewhere."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Gains:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TrackState:
-    """What a tracker knows after a step.
+    """State of a track, or of a batch of tracks, after a step.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class TrackState:
     Raises
     ------
     ValueError
-        If `lanes` is not of the shape that `shape` and `rows` ask for.
+        If `lanes` does not have the shape that `shape` and `rows` require.
     """
 
     time: Array | np.float64
@@ -57,7 +57,7 @@ class TrackState:
     rows: Rows
 
     def __post_init__(self) -> None:
-        # Compiled code takes the numbers as they lie, and asks no more.
+        # Compiled code uses the numbers as they are in memory, without checks.
         lanes = np.ascontiguousarray(self.lanes, dtype=np.float64)
         expected = (self.rows.kept, math.prod(self.shape) // self.rows.n_axes)
         if lanes.shape != expected:
@@ -68,11 +68,11 @@ class TrackState:
     def unchecked(
         cls, time: Array | np.float64, shape: tuple[int, ...], lanes: Array, rows: Rows
     ) -> TrackState:
-        """State of values that are known to fit; for a stream of plots.
+        """State of values that are known to be consistent; for a stream of plots.
 
         The constructor of a frozen class takes as long as a compiled step: it sets each attribute
         through `object.__setattr__`, and then checks them. Here the slots are set directly, which
-        is possible for an object that nobody has seen yet.
+        is possible for an object that is not in use yet.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ _set_time, _set_shape, _set_lanes, _set_rows = (
 
 
 def check_rows(state: TrackState, rows: Rows, name: str) -> None:
-    """Refuse a state whose lanes are laid out in another way than those of a tracker.
+    """Raise ValueError for a state whose lanes have another layout than those of a tracker.
 
     Parameters
     ----------

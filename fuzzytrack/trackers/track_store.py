@@ -15,21 +15,22 @@ from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = ["TrackStore"]
 
-#: Numbers by which a store knows its tracks, from 0 on.
+#: Numbers that identify the tracks of a store, from 0 on.
 Slots = NDArray[np.intp]
 
 
 class TrackStore:
     """States of many tracks, each at a time of its own.
 
-    A track is known by its slot, a small whole number that `add` gives it and that another track
-    may get once it was dropped. Any of the tracks can be stepped or predicted together, in any
-    order; the numbers are those of each track run by itself, to the last bit.
+    A track is identified by its slot, a small whole number that `add` returns. When a track is
+    dropped, its slot may be used for another one. Any of the tracks can be stepped or predicted
+    together, in any order; the numbers are those of each track run by itself, to the last bit.
 
     Parameters
     ----------
     tracker : Tracker or str
-        Of all tracks; or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
+        Tracker of all tracks, or a text that names it, see
+        `fuzzytrack.trackers.catalog.make_tracker`.
     n_axes : int
         Axes of the plots.
 
@@ -41,8 +42,8 @@ class TrackStore:
     Notes
     -----
     Takes ``8·rows.kept`` bytes a lane (see `fuzzytrack.lanes.layout.Rows`) and 8 a track, for the
-    largest number of tracks there were at once and a quarter more. Slots of dropped tracks are
-    given out again, the last one dropped first.
+    largest number of tracks at one time and a quarter more. Slots of dropped tracks are used again,
+    the last one dropped first.
 
     Examples
     --------
@@ -65,8 +66,8 @@ class TrackStore:
         # Without a plot, so the standard deviation is of no meaning.
         nobody = tracker.start(np.empty((0, n_axes)), 0.0, 1.0)
         self._rows = nobody.rows
-        # A row a track: what is near in time is fetched together. A cell is a number of all lanes
-        # of the track, which are copied together.
+        # One row for each track, since its numbers are used together. A cell is a number of all
+        # lanes of the track, which are copied together.
         self._cell = np.dtype((np.void, 8 * (n_axes // nobody.rows.n_axes)))
         self._numbers = np.empty((0, nobody.rows.kept), self._cell)
         # NaN in slots without a track.
@@ -87,7 +88,7 @@ class TrackStore:
     def room(self) -> int:
         """Number of slots, with and without a track.
 
-        What is kept beside the store, one entry a slot, needs this length.
+        Arrays beside the store with one entry for each slot need this length.
         """
         return len(self._time)
 
@@ -132,7 +133,7 @@ class TrackStore:
         return slots
 
     def drop(self, slots: ArrayLike) -> None:
-        """End some tracks; their slots may be given out again.
+        """End some tracks; their slots may be used again.
 
         Parameters
         ----------
@@ -219,7 +220,7 @@ class TrackStore:
         return state
 
     def predict(self, slots: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> Prediction:
-        """Where some tracks are expected at a later time; all stay as they are.
+        """Predicted positions of some tracks at a later time; the tracks do not change.
 
         Parameters
         ----------
@@ -228,7 +229,7 @@ class TrackStore:
         t : array_like, shape () or (n,)
             Times (s), common or each track's own, later than those of the tracks.
         sigma : array_like, optional
-            Standard deviation of the plots to come (m), broadcast against shape (n, n_axes).
+            Standard deviation of the next plots (m), broadcast against shape (n, n_axes).
 
         Returns
         -------
@@ -250,12 +251,12 @@ class TrackStore:
         self._time[slots] = state.time
 
     def _make_room(self, count: int) -> None:
-        """For so many tracks in all."""
+        """Make room for `count` tracks in all."""
         have = self.room
         if count > have:
             room = count + count // 4
-            # In place where the system can move pages, and never twice the memory; nobody else
-            # has a view of them. Arrays from a pickle belong to it, and are copied once.
+            # In place where the system can move pages, and never twice the memory; there are no
+            # other views of the arrays. Arrays from a pickle belong to it, and are copied once.
             for name in ("_time", "_numbers"):
                 array = np.require(getattr(self, name), requirements="O")
                 array.resize((room, *array.shape[1:]), refcheck=False)
@@ -263,7 +264,7 @@ class TrackStore:
             self._time[have:] = math.nan
 
     def _checked(self, slots: ArrayLike) -> Slots:
-        """Slots as an array, if there is a track in each and none is named twice."""
+        """Slots as an array; ValueError unless there is a track in each and none is named twice."""
         whom = np.asarray(slots)
         if whom.ndim != 1 or (whom.size and whom.dtype.kind not in "iu"):
             raise ValueError(

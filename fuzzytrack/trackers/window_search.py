@@ -50,8 +50,8 @@ class WindowSearch(LaneTracker):
     100 plots and α = 0.05 before fit their tables: the search acts late, or not at all. After two
     noisy plots so small an α leaves a large error until the window is full; 0.5 does not. The least
     of equal sums is that of the lowest α. Missed plots are not in the window, and the time between
-    plots may be irregular. A plot takes window/grid_step corrections on trial, and a track
-    remembers 5·window numbers on each axis.
+    plots may be irregular. A plot takes window/grid_step trial corrections, and the state of a
+    track has 5·window numbers on each axis.
 
     Examples
     --------
@@ -82,7 +82,7 @@ class WindowSearch(LaneTracker):
     @property
     def grid(self) -> tuple[float, ...]:
         """The α that are tried."""
-        # A step that divides 1 but for rounding reaches it.
+        # A step that divides 1, up to rounding, reaches it.
         count = math.floor(1 / self.grid_step + 1e-9)
         return tuple(min(k * self.grid_step, 1.0) for k in range(1, count + 1))
 

@@ -52,7 +52,7 @@ def noise_rows(runs: int, seed: int) -> list[Row]:
     return [rows[0], simulated, *rows[1:]]
 
 
-_THREE = "three quantities, not three opinions on one: each is right for what it is"
+_THREE = "three different quantities: each value is right for its own"
 _LENGTH = "the length of the report's simulation is not stated; 1 % is allowed for it"
 
 
