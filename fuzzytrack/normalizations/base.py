@@ -35,9 +35,11 @@ class Normalization(ABC):
     Notes
     -----
     The numbers that its constructor takes can be given next to its name in the scheduler settings
-    of a rule base. If the rule base opens with a growing memory, a normalization is called with
-    zeros at the first plot of a track, and at the second if velocity starts from it, even if it
-    does not see every step.
+    of a rule base.
+
+    If the rule base opens with a growing memory, a normalization is called with zeros at the first
+    plot of a track, and at the second if velocity starts from it, even if it does not see every
+    step.
     """
 
     source: ClassVar[str] = ""

@@ -261,7 +261,7 @@ def test_a_track_that_goes_on_is_refused(cut):
     tracker = AlphaBetaTracker(ALPHA_BETA)
     before = tracker.run(times[:cut], plots[:cut])
     after = tracker.run(times[cut:], plots[cut:], state=before.state)
-    with pytest.raises(ValueError, match="goes on from a state"):
+    with pytest.raises(ValueError, match="result: it continues from a state"):
         track_covariance(after, 1.0, 1.0)
 
 
