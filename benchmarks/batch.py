@@ -30,7 +30,7 @@ from benchmarks.work import (
 
 __all__ = ["fixed", "float32", "fuzzy", "numpy_gains", "plugin", "single", "table", "threads"]
 
-SECTION = "Batches, one thread unless said (million updates a second)"
+SECTION = "Batches, one thread unless stated (million updates a second)"
 RATE = "M/s"
 #: Of an update: the plot is read, the prediction written.
 BYTES = 16
@@ -62,7 +62,7 @@ def fuzzy(scale: Scale) -> list[Row]:
         Row(SECTION, "fuzzy exact", rate, RATE, "hand-written Numba loop", base,
             ratio(found["loop"], found["ours"]), Target(">=", 0.9),
             note="The loop serves this one rule base with an α-β filter, its rule table worked out "
-            "on paper: it has no acceleration, no checks of its input, and no results but the "
+            "by hand: it has no acceleration, no checks of its input, and no results but the "
             "predictions. Blocks, memory and width of vectors are as in fuzzytrack. Its "
             f"predictions differ by {apart:.1g} m at most."),
     ]  # fmt: skip
@@ -152,18 +152,18 @@ def fixed(scale: Scale) -> list[Row]:
             ratio(found["triad"], found["ours"], share), Target(">=", 0.6),
             note=f"{BYTES} bytes an update are counted: 8 of the plot and 8 of the prediction. As "
             "for the triad's 24, lines that are read only to be overwritten are not counted, nor "
-            "is the first touch of a fresh result, which the triad does not have: to fill one of "
+            "is the first access to a new result, which the triad does not have: to fill one of "
             f"this size alone takes {1e3 * found['fill'].median:.3g} ms, the whole run "
             f"{1e3 * found['ours'].median:.3g} ms."),
         Row(SECTION, "fixed gains", rate, RATE, "hand-written Numba loop",
             _rate(plots, found["loop"]), ratio(found["loop"], found["ours"]),
             note="The loop has missed plots, irregular times and the two-point start in it; no "
-            "acceleration, no last plot, no checks, and no state that goes on. Its predictions "
+            "acceleration, no last plot, no checks, and no state at the end. Its predictions "
             f"differ by {apart:.1g} m at most."),
         Row(SECTION, "fixed gains", rate, RATE, "bare Numba loop", _rate(plots, found["bare"]),
             ratio(found["bare"], found["ours"]),
             note="Not the same work: the loop has no missed plots, no start and no checks. It "
-            "shows what the bare recursion does in this memory."),
+            "shows the speed of the bare recursion with this memory."),
     ]  # fmt: skip
 
 
@@ -203,8 +203,8 @@ def threads(scale: Scale) -> list[Row]:
     rows.append(
         Row(SECTION, "machine: arithmetic loop, two threads", count / two.median, RATE,
             "one thread", count / one.median, bounds["arithmetic"],
-            note="Not ours: seven operations on each number of a block in the first cache. No "
-            "program can gain more from a second thread here, unless it waits for memory.")
+            note="Not fuzzytrack: seven operations on each number of a block in the first cache. "
+            "No program can gain more from a second thread here, unless it waits for memory.")
     )  # fmt: skip
     return rows
 
@@ -253,6 +253,6 @@ def plugin(scale: Scale) -> list[Row]:
         Row(SECTION, "plug-in scheduler", _rate(plots, found["plug-in"]), RATE,
             "same kernel, built in", _rate(plots, found["built in"]),
             ratio(found["built in"], found["plug-in"]), Target(">=", 0.8),
-            note="TwoSpeed of examples/plugin, against the same rule in the idiom of the built-in "
+            note="TwoSpeed of examples/plugin, against the same rule written like the built-in "
             f"kernels. Predictions differ by {apart:.1g} m at most."),
     ]  # fmt: skip

@@ -1,7 +1,7 @@
 """The same filters written by hand: Numba loops, and plain NumPy.
 
 Each loop knows its one filter, and is written as fast as we can. It has no acceleration, no checks
-and no results but the predictions; the fuzzy one has its rule base worked out on paper. Missed
+and no results but the predictions; the fuzzy one has its rule base worked out by hand. Missed
 plots, irregular times and the two-point start are in. Blocks of tracks stay in the first cache with
 time outermost; once all tracks of a block have started, a shorter step does the rest. It reads the
 plots and writes the predictions where they are, in the widest vectors there are.

@@ -53,7 +53,7 @@ def kim_lee(scale: Scale) -> list[Row]:
     tracker = ft.AlphaBetaTracker(InnovationScheduler.as_published(), start="one-point")
     theirs = {"FilterPy KalmanFilter": lambda: peers.filterpy_kalman(peers.Model(2, QUIET))}
     note = (
-        "FilterPy has no such filter: its Kalman filter without adaptation stands in, which has "
+        "FilterPy has no such filter: its Kalman filter without adaptation is used, which has "
         "less to do; not the same result"
     )
     return _against(scale, "Kim-Lee", tracker, theirs, note, sigma=peers.SIGMA_W)
@@ -67,7 +67,7 @@ def imm(scale: Scale) -> list[Row]:
         models = peers.Model(2, QUIET), peers.Model(2, AGILE)
         return peers.filterpy_imm(*models, STAY, 1 / 3)
 
-    note = "The same models and start; fuzzytrack leaves out what mixing correlates between axes"
+    note = "The same models and start; fuzzytrack neglects the correlation of axes by mixing"
     return _against(scale, "IMM", tracker, {"FilterPy IMMEstimator": theirs}, note)
 
 

@@ -101,7 +101,7 @@ def cold_start(scale: Scale) -> list[Row]:
     rows = []
     for name, pairs, target, disk in (
         ("with its kernel on disk", with_kernels, Target("<=", 2.5),
-         f"The {files} files that the first process left: its steps, and the passage that all "
+         f"The {files} files that the first process left: its steps, and the loop that all "
          "trackers share."),
         ("without", without, None, "An empty folder for compiled code."),
     ):  # fmt: skip

@@ -1,4 +1,4 @@
-"""Where the time of a batch goes: the run, its compiled passage, a step, and the memory."""
+"""Where the time of a batch goes: the run, its compiled loop, a step, and the memory."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from benchmarks.work import (
     warm,
 )
 from fuzzytrack.kernels.llvm import call, pointer
-from fuzzytrack.lanes import block_loop as passage
+from fuzzytrack.lanes import block_loop
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, aligned
 from fuzzytrack.trackers.lane_tracker import runner
 
@@ -51,8 +51,8 @@ def parts(scale: Scale, name: str, tracker: Any) -> list[Row]:
     result, copied = np.zeros(plots.size), np.zeros_like(plots)
     works: dict[str, Work] = {
         "whole": lambda: predictions(tracker, times, plots),
-        "passage": _passage(tracker, times, plots, result),
-        "no output": _passage(tracker, times, plots, np.empty(0)),
+        "loop": _loop(tracker, times, plots, result),
+        "no output": _loop(tracker, times, plots, np.empty(0)),
         "step": _steps(tracker, plots),
         "fill": lambda: np.full(plots.shape, 1.0),
         "copy": lambda: np.copyto(copied, plots),
@@ -61,20 +61,20 @@ def parts(scale: Scale, name: str, tracker: Any) -> list[Row]:
     whole = found["whole"]
     speed = updates_a_second(plots, found["step"].median)
     notes = {
-        "passage": ("compiled passage, into a result that is there",
-                    "Lanes made fresh each time included. What the whole run takes beyond it: "
-                    "checks, and the first touch of a fresh result."),
-        "no output": ("compiled passage, without output",
+        "loop": ("compiled loop, into an existing result",
+                    "With new lanes each time. The whole run also has checks, and the first "
+                    "access to a new result."),
+        "no output": ("compiled loop, without output",
                       "Predictions go to one block in the cache."),
         "step": ("steady steps alone, one block in the first cache",
                  f"For as many updates: {speed:.4g} M/s. Plots, state and predictions stay there."),
-        "fill": ("memory: filling a fresh result", "np.full; most of it is the first touch."),
-        "copy": ("memory: copying the plots", "Into an array that is there."),
+        "fill": ("memory: filling a new result", "np.full; most of it is the first access."),
+        "copy": ("memory: copying the plots", "Into an existing array."),
     }  # fmt: skip
     rows = [
         Row(SECTION, f"{name}, whole `run`", 1e3 * whole.median, UNIT,
             note=f"{scale.tracks:,} tracks x {scale.steps} steps, {plots.size / 1e6:.3g} million "
-            "updates; a ratio below says how many times faster than this a part is."),
+            "updates; a ratio below is the time of this over that of the part."),
     ]  # fmt: skip
     for key, (what, note) in notes.items():
         rows.append(
@@ -84,8 +84,8 @@ def parts(scale: Scale, name: str, tracker: Any) -> list[Row]:
     return rows
 
 
-def _passage(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work:
-    """What `run` calls once all is checked and laid out; an empty array takes no predictions."""
+def _loop(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work:
+    """The loop that `run` calls after its checks; an empty array gets no predictions."""
     core, (steps, tracks, _) = runner(tracker, 1), plots.shape
     fresh = core.fresh(tracks).reshape(-1)
     lanes, nothing = fresh.copy(), np.empty(0)
@@ -95,7 +95,7 @@ def _passage(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work
     buffer, scratch = aligned(core.rows.total * BLOCK), np.empty(BLOCK)
     # One time step and one sigma for all tracks.
     given = (plots.reshape(-1), dts, np.full(1, np.nan), (1, 0), (0, 0, 0), lanes, outputs)
-    run, places = passage.compiled_run(), passage.layout(core.rows)
+    run, places = block_loop.compiled_run(), block_loop.layout(core.rows)
 
     def work() -> None:
         lanes[:] = fresh

@@ -92,7 +92,7 @@ def single(scale: Scale) -> list[Row]:
         rows.append(
             Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, name, theirs,
                 ratio(found[name], fuzzy), Target(">=", round(THERE[name] / LIMIT, 2)),
-                note=f"{name} is not the same filter: it is what a user would use else. On the "
+                note=f"{name} is not the same filter: it is what a user would use instead. On the "
                 f"machine of the targets it took {THERE[name]:g} µs.")
         )  # fmt: skip
     return rows

@@ -40,7 +40,7 @@ class Ratio:
 def take_turns(works: Mapping[str, Work], repeats: int) -> dict[str, Timing]:
     """Time jobs in turns, so that a busy machine slows all of them alike.
 
-    Each is done once before, untimed: compilation and first touches of memory are no part of it.
+    Each is done once before, untimed, so compilation and first accesses to memory are not measured.
     Every second round goes backwards, lest one job always find the cache as the same other left it.
     """
     for work in works.values():

@@ -2,13 +2,13 @@
 What does one cell of the table do?
 ===================================
 
-A rule base is a table of words. Its control surface is what the words mean in numbers: load a
+A rule base is a table of words. Its control surface shows the numbers that follow from them: load a
 table, look at its surface, change one cell, and look again.
 """
 
 # %%
-# Load a rule base that comes with fuzzytrack. The inputs say how wrong a prediction was and
-# whether that grows; the outputs are the stiffness and the damping of the filter.
+# Load a rule base that comes with fuzzytrack. The inputs are the error of a prediction and
+# its change; the outputs are the stiffness and the damping of the filter.
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.saving import dumps_rulebase, set_cell
 
@@ -17,16 +17,16 @@ text = dumps_rulebase(rules)
 print(text[text.index("rules:") :])
 
 # %%
-# The words are fuzzy sets. They crowd around zero, where small errors are told apart.
+# The words are fuzzy sets. They are narrow near zero, to distinguish small errors.
 ft.plot_memberships(rules)
 
 # %%
-# From words to numbers: along E = ze every cell says L-L, large stiffness and large damping, and
-# there runs the ridge.
+# From words to numbers: along E = ze every cell is L-L, large stiffness and large damping, which
+# gives the ridge.
 ft.plot_surface(rules)
 
 # %%
-# Now one cell: where there is no error and no change of it, say Z-Z instead of L-L. Only the text
+# Now one cell: where there is no error and no change of it, write Z-Z instead of L-L. Only the text
 # of that cell changes.
 edited = ft.loads_rulebase(set_cell(text, {"E": "ze", "dE": "ze"}, "Z-Z"))
 for name in ("before", "after"):

@@ -43,7 +43,7 @@ plot_errors(results, truth)
 
 # %%
 # Both lose the target in the turn by about the same amount: as published, the table keeps its gains
-# near the fixed pair. What it brings is that you can see why, and change it.
+# near the fixed pair. Its advantage is that you can see why, and change it.
 for name, batch in results.items():
     error = np.linalg.norm(batch.predicted - truth[:, None, :], axis=-1)[2:]
     print(f"{name:18}  prediction error, RMS: {np.sqrt(np.mean(error**2)):.1f} m")

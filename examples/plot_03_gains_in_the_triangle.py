@@ -2,8 +2,8 @@
 Which gains does it choose?
 ===========================
 
-Every pair of gains is a point in a plane, and stable filters live in a triangle of it. Where in the
-triangle does a rule base go?
+Every pair of gains is a point in a plane, and the stable ones fill a triangle. Which part of the
+triangle does a rule base use?
 """
 
 # %%
@@ -29,8 +29,8 @@ fixed = {"fixed pair": (0.5377, 0.2018)}
 ft.plot_gain_plane(result, box=narrow, mark=fixed)
 
 # %%
-# The limits decide nearly everything. The same rules within wider limits give a far more nervous
-# filter, which at zero damping even stops correcting (α = 0):
+# The limits decide nearly everything. The same rules within wider limits give a filter with
+# much more noise, which at zero damping even stops correcting (α = 0):
 wide = ft.load_rulebase("stiffness-damping-wide")
 nervous = ft.AlphaBetaTracker(ft.FuzzyScheduler(wide)).run(t, z)
 ft.plot_gain_plane({"wide limits": nervous, "narrow limits": result}, box=wide, mark=fixed)

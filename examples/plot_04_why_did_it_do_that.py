@@ -2,8 +2,8 @@
 Why did it do that?
 ===================
 
-A scheduler that can be asked beats one that cannot. Find the update with the largest innovation,
-and ask the rule base which of its rules chose the gains.
+The decisions of a rule base can be explained. Find the update with the largest innovation, and show
+which rules chose the gains.
 """
 
 # %%
@@ -30,7 +30,7 @@ before = np.concatenate([[0.0], error[:-1]])
 rate = (error - before) / np.maximum(abs(error - before), abs(before))
 
 # %%
-# Where is the innovation largest, and what did the rules make of it? Every rule that fired, the
+# Where is the innovation largest, and which gains did the rules choose? Every rule that fired, the
 # strongest first, and the gains that follow from its outputs:
 system = ft.FuzzySystem(rules)
 
@@ -48,7 +48,7 @@ largest = int(np.argmax(abs(innovation)))
 why(largest)
 
 # %%
-# A large error that does not change calls for the smallest stiffness and damping: the published
-# rules are at their most careful just when the target brakes. Here is something to edit. Four plots
-# later the track is found again, and several rules share the decision:
+# For a large error that does not change, the published rules choose the smallest stiffness and
+# damping: they correct least just when the target brakes. This is a place to edit. Four plots later
+# the track is close to the target again, and several rules fire together:
 why(largest + 4)

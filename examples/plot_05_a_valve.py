@@ -3,7 +3,7 @@ How do rules become a number?
 =============================
 
 The smallest complete fuzzy system, from chapter 3.1 of Llinas et al. (1998): it keeps the flow out
-of a valve constant. No tracking here: the engine knows nothing of targets.
+of a valve constant. There is no tracking here: the engine can be used for anything.
 """
 
 # %%
@@ -21,7 +21,7 @@ ft.plot_memberships(valve)
 # %%
 # All rules together are one relational matrix between flow and opening, with a spike for each rule.
 # A flow of 1.25 picks the column under the dashed line: the fuzzy output. Its center of gravity is
-# the answer.
+# the result.
 plot_relation(valve, at=1.25)
 
 # %%
@@ -29,8 +29,8 @@ plot_relation(valve, at=1.25)
 ft.plot_surface(valve)
 
 # %%
-# A rule may be trusted by half. With a confidence of 0.5 the spike of the first rule (flow zero,
-# opening large) is only half as high, so its neighbor gains weight where both speak.
+# A rule can have a confidence below 1. With a confidence of 0.5 the spike of the first rule (flow
+# zero, opening large) is only half as high, so its neighbor has more weight where both fire.
 doubted = ft.load_rulebase("valve-confidence")
 print(doubted.rules[0])
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
@@ -40,7 +40,7 @@ left.set_title("trusted")
 right.set_title("first rule trusted by half")
 
 # %%
-# Where the first rule is alone, its confidence makes no difference: there is no other opinion.
+# Where only the first rule fires, its confidence makes no difference: there is nothing to weigh.
 for flow in (0.0, 0.25, 0.5, 1.25):
     trusted = ft.FuzzySystem(valve)(flow=flow)["opening"]
     half = ft.FuzzySystem(doubted)(flow=flow)["opening"]

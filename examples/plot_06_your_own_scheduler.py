@@ -2,13 +2,13 @@
 How do I write my own scheduler?
 ================================
 
-As one small function of numbers. This one compares innovations with the noise of the plots: calm
-while they look like noise, quick when they keep pointing one way.
+As one small function of numbers. This one compares innovations with the noise of the plots: its
+gains are small while innovations look like noise, and large when they keep the same sign.
 """
 
 # %%
-# The whole scheduler. Noise cancels in a running mean, a turn does not; the mean is what the
-# scheduler remembers of a track. The gains stay on the curve of Benedict and Bordner, on which only
+# The whole scheduler. Noise cancels in a running mean, a turn does not; the mean is the
+# memory of the scheduler. The gains stay on the curve of Benedict and Bordner, on which only
 # one number is left to choose.
 from dataclasses import dataclass
 

@@ -1,14 +1,14 @@
 """
-How exact is the answer?
+How exact is the output?
 ========================
 
 A rule base can be evaluated in three ways: exactly, through the discrete relational matrix as the
-papers do, or from a table. Each checks the others.
+papers do, or from a table. They are compared here.
 """
 
 # %%
-# The exact engine evaluates the sets at the input itself. The relational matrix knows only its grid
-# points; on them it must agree to rounding, and between them it takes the nearest.
+# The exact engine evaluates the sets at the input itself. The relational matrix has values at its
+# grid points only: there it must agree up to rounding; between them it takes the nearest one.
 import numpy as np
 from matplotlib import pyplot as plt
 
@@ -50,8 +50,8 @@ ax.legend(frameon=False)
 ax.grid(color="0.9")
 
 # %%
-# What the matrix costs, with its 41 points an input, is seen in the surface: the nearest grid point
-# instead of the input itself makes steps of it.
+# The surface shows the error of the matrix, with its 41 points for each input: it has steps,
+# because the nearest grid point is used instead of the input itself.
 figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
 for ax, method in zip(axes, ("exact", "relation"), strict=True):
     ft.plot_surface(rules, "damping", points=201, method=method, style="contour", axes=ax)

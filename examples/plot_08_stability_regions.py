@@ -2,13 +2,13 @@
 Which gains are stable?
 =======================
 
-Those of a triangle, for α-β filters; with γ those of a volume. Where in the triangle a pair lies
-says how the filter answers.
+Those in a triangle, for α-β filters; with γ those in a volume. The place of a pair in the triangle
+determines how the filter responds.
 """
 
 # %%
 # The regions differ in their poles. Underdamped filters (Ia, Ib) overshoot, overdamped ones (IIa)
-# creep; on the other side of the triangle (IIb) the estimate changes sign at every scan.
+# approach slowly; on the other side of the triangle (IIb) the estimate changes sign at every scan.
 import numpy as np
 
 from fuzzytrack import gains
@@ -28,8 +28,8 @@ for alpha, beta in ((0.5, 0.2), (0.5, 0.05), (0.7, 2.5)):
 plot_stability_volume()
 
 # %%
-# The volume is a prism in disguise: an α-β-γ filter is an α-β filter with gains a and b, and one
-# more pole -c. Any a and b of the triangle go with any c between -1 and 1.
+# In other coordinates the volume is a prism: an α-β-γ filter is an α-β filter with gains a and b,
+# and one more pole -c. Any a and b of the triangle can be combined with any c between -1 and 1.
 plot_stability_volume("abc")
 print(
     "(a, b, c) = (0.5, 0.3, -0.6) is (α, β, γ) = ({:.2f}, {:.2f}, {:.2f})".format(

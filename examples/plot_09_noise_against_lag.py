@@ -2,8 +2,8 @@
 How much noise for how much lag?
 ================================
 
-Gains that smooth more lag more. How much of the one for the other, and which gains are best for a
-target that is known?
+Gains that smooth more also lag more. How much lag does less noise cost, and which gains are best
+for a known target?
 """
 
 # %%

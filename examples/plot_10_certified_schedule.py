@@ -3,7 +3,7 @@ May the gains switch freely?
 ============================
 
 Each pair of gains of a schedule is stable. That does not make the schedule stable: gains that
-change at the wrong moments can feed an error. A certificate settles the question for all orders.
+change at the wrong moments can make an error grow. A certificate covers all orders.
 """
 
 # %%
@@ -27,7 +27,7 @@ print(wide.sequence.round(3))
 
 
 # %%
-# Both at work on an error of 1 m: gains at random within the narrow limits, and the sequence.
+# Both, starting with an error of 1 m: gains at random within the narrow limits, and the sequence.
 def errors(gains):
     state, size = np.array([1.0, 0.0]), [1.0]
     for matrix in error_matrix(*np.transpose(gains)):

@@ -20,11 +20,11 @@ print(f"α = {best.alpha:.3f}, β = {best.beta:.3f}: {best.error:.2f} m behind")
 plot_circle_cost(rate, dt, radius)
 
 # %%
-# The more the noise weighs, the smaller the gains; up to a weight at which it is cheaper to give
-# the circle up and to stay at its center. There the thick line ends.
+# The larger the weight of the noise, the smaller the gains, up to a weight at which it costs less
+# not to follow the circle and to stay at its center. There the thick line ends.
 plot_circle_gains(rate, dt, radius, kappas=10 ** np.arange(-2, 3.5, 0.25))
 
 # %%
-# On a straight line one index holds the motion, the sampling time and the noise. With a third gain
-# for the acceleration:
+# On a straight line one index combines the motion, the sampling time and the noise. With a third
+# gain for the acceleration:
 plot_optimal_gains(order=3)

@@ -4,14 +4,14 @@ Kim & Lee: gains from the innovation's variance
 
 *B.-D. Kim and J.-S. Lee, Adaptive α-β tracker for TWS radar system.*
 
-**What the paper claims.** The mean square of the last twelve innovations tells how hard the target
-maneuvers. Put through the tracking index it gives gains that follow a target of ±5 g, where the
-conventional tracker lags far behind.
+**What the paper claims.** The mean square of the last twelve innovations measures how hard the
+target maneuvers. By way of the tracking index it gives gains that follow a target of ±5 g, where
+the conventional tracker lags far behind.
 
 **What we found.** The claim holds, against a conventional tracker that expects 0.5 g. One that
-expects the 5 g which the target flies is as good on the average, without any adaptation; the
-adaptive one is for targets whose acceleration nobody knows. And the text, read literally, latches
-up: large gains make innovations large, which keep the gains large.
+expects the 5 g which the target flies is as good on average, without any adaptation; the
+adaptive one is for targets of unknown acceleration. And with the text read literally, gains stay
+large: large gains make large innovations, which keep the gains large.
 
 **How it is read.** The paper prints no numbers, and leaves open what the conventional tracker
 expects (5 m/s² here) and the process covariance Q. ``InnovationScheduler.as_published()`` takes

@@ -15,7 +15,8 @@ reproduced: noise, trajectories, gains and units are missing. With 30 steps of q
 fall to α = 0.12, and a vessel that turns leaves its gate.
 
 **How it is read.** ``QualityGains()`` stops at N = 10, which keeps vessels that turn;
-``QualityGains.as_published()`` goes to 30. A miss costs 3; the paper says only "larger" than 1.
+``QualityGains.as_published()`` goes to 30. A miss lowers it by 3; the paper has only "larger" than
+1.
 """
 
 # %%

@@ -20,8 +20,8 @@ M2. Of the 84 numbers that the paper derives from its own tables 15 do not follo
 **How it is read.** The paper gives neither tracks nor noise, nor the parameters of M3 to M5.
 Scenario S3 was made so that its errors come near to the averages, with α = 0.05 in M1, a weight of
 0.05 in M3, a window of 80 of 100 plots in M4 and ten filters from α = 0.1 to 0.999 in M5: it shows
-that the tables can be, and proves nothing of them. We recommend ``ParallelBank()``, which weighs
-its members by how well they predicted the plots before.
+that such tables are possible, not that they are right. We recommend ``ParallelBank()``, which
+weighs its members by how well they predicted the plots before.
 """
 
 # %%
@@ -42,7 +42,7 @@ found.pictures["fig8-coloured"]()
 
 # %%
 # M5 without hindsight: by the last plot alone it is worse than the plots themselves; with memory it
-# is about as good as the best fixed gain, which nobody knows beforehand.
+# is about as good as the best fixed gain, which is not known beforehand.
 for name in ("M5", "M5 last", "M5 best", "M5 soft", "fixed α = 0.4", "plots"):
     white, coloured = (found.ours(f"{name}: Y, {noise} (m)") for noise in ("white", "coloured"))
     print(f"{name:14}  RMSE in Y {white:4.1f} m in white noise, {coloured:4.1f} m in colored noise")

@@ -7,7 +7,7 @@ Llinas et al.: five trackers in a field of sensors
 **What the report claims.** Gains scheduled by a fuzzy rule base, through the w-domain, mostly
 improve the tracker with fixed gains; a submarine, four maneuvers, 50 runs.
 
-**What we found.** Trackers 1 and 4 come out as printed, within the spread of 50 runs. The two
+**What we found.** Trackers 1 and 4 are as printed, within the spread of 50 runs. The two
 differ by about 1 %, and the fixed gains are ahead in three maneuvers of four. Readings, errata and
 all tables are on :doc:`a page of their own </papers/llinas>`.
 """

@@ -7,8 +7,8 @@ Every tracker here on three sets of random tracks: ``report``, the four maneuver
 with 1 to 3 σ/T². Errors are those of the predicted position, in standard deviations σ of the noise.
 
 A tracker can only be judged when its numbers are tuned. Each was tuned twice, on other tracks than
-those of this page: for each set by itself, and once for all three, which is what a radar that does
-not know its targets can have.
+those of this page: for each set by itself, and once for all three, as for a radar whose targets
+are not known beforehand.
 """
 
 # %%
@@ -110,17 +110,17 @@ for each in ranking:
     print(f"{each.name:27}{count:8}{errors}{change:>16}{100 * each.own_change:+10.1f} %")
 
 # %%
-# Plainly:
+# In words:
 #
 # * **The published rule base is not better than a tuned fixed filter.** With its four limits tuned
-#   it comes level, no more: an innovation measured against the displacement of the target says
-#   nothing about the noise.
-# * Rules on a *smoothed innovation against the noise*, ``omega-schedule``, are ahead of every fixed
-#   gain and every Kalman filter, and level with an IMM of two models of constant velocity; as it is
+#   it is as good as that, not better: an innovation relative to the displacement of the target
+#   does not measure the noise.
+# * Rules on a *smoothed innovation against the noise*, ``omega-schedule``, are better than every
+#   fixed gain and every Kalman filter, and as good as an IMM of two models of constant velocity; as
 #   shipped, without tuning.
-# * The IMM with a model of acceleration is ahead of all.
-# * A bank of fixed filters, mixed by how well they predicted, gains half as much. Gains out of the
-#   variance of the innovation, or searched over a window, come late and gain nothing.
+# * The IMM with a model of acceleration is the best of all.
+# * A bank of fixed filters, mixed by how well they predicted, gains half as much. Gains from the
+#   variance of the innovation, or searched over a window, react late and are no better.
 # * For one kind of target alone the differences are small: tune a fixed filter first.
 names = [each.name for each in ranking if each.single_change < 0.3][::-1]
 shown = {each.name: each for each in ranking}

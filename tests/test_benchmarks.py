@@ -126,9 +126,9 @@ def test_the_parts_of_a_batch_are_the_batch(small):
     tracker = work.fixed_tracker()
     times, plots = work.times_and_plots(small.tracks, small.steps, missed=0.1)
     result = np.zeros(plots.size)
-    passage = profile._passage(tracker, times, plots, result)
+    loop = profile._loop(tracker, times, plots, result)
     for _ in range(2):
-        passage()
+        loop()
         np.testing.assert_array_equal(
             result.reshape(plots.shape), work.predictions(tracker, times, plots)
         )

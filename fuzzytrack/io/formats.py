@@ -78,7 +78,7 @@ class Format(Protocol):
         """Raise a DataError if what the format needs is not installed."""
 
     def open_source(self, file: str, /) -> AbstractContextManager[Source]:
-        """Open a file that is read; whatever is wrong with it, now or later, is a DataError."""
+        """Open a file that is read; any error in it, now or later, is a DataError."""
 
     def open_target(
         self, draft: Path, types: Mapping[str, str], compact: bool, progress: Progress, /

@@ -351,7 +351,7 @@ def _time_error(piece: Piece, columns: Columns, before: int, here: int) -> DataE
     id = piece.ids[here]
     whose = f" (id {id!r})" if id else ""
     if times[here] == times[before]:
-        # Several tracks in one file look like this when they are not told apart.
+        # Several tracks in one file look like this when their identities are not read.
         mend = "" if id else "; if these are several tracks, name the column of their id (`id`)"
         what = f"repeats that of row {rows[before]}"
         wanted = f"expected times that differ{mend}"
@@ -359,7 +359,7 @@ def _time_error(piece: Piece, columns: Columns, before: int, here: int) -> DataE
         what = f"is earlier than {times[before]:.15g} in row {rows[before]}"
         wanted = "expected increasing times; `sort` puts them in order"
         if not id:
-            wanted += ", and `id` tells several tracks apart"
+            wanted += ", and `id` names the column that distinguishes tracks"
     return DataError(
         f"{piece.file}: row {rows[here]}, column {columns.time}: time {times[here]:.15g}{whose} "
         f"{what}; {wanted}"

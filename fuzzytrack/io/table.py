@@ -233,4 +233,4 @@ def no_rows(file: str) -> DataError:
 
 
 def silent(share: float) -> None:
-    """Progress that nobody watches."""
+    """Progress that is not shown."""

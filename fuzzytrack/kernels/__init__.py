@@ -1,6 +1,6 @@
 """Scalar functions in plain Python, and their compilation by Numba.
 
-The only package that imports Numba and llvmlite. It knows nothing of tracks.
+The only package that imports Numba and llvmlite. It has nothing about tracks in it.
 
 =============  =====================================================================
 `language`     words that such a function may use beside plain Python

@@ -1,6 +1,6 @@
 """The folder in which compiled code is kept, so that another process need not compile it again.
 
-It knows files only. What they are named and hold is up to `fuzzytrack.kernels.llvm`.
+It handles files only; `fuzzytrack.kernels.llvm` chooses their names and contents.
 """
 
 from __future__ import annotations

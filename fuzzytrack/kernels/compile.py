@@ -56,7 +56,7 @@ def entry_point(function: Callable[..., Any], arguments: str, dtype: type = np.f
     Parameters
     ----------
     function : callable
-        As for `compiled`. It must not raise: its caller does not learn of an exception.
+        As for `compiled`. It must not raise: its caller cannot see an exception.
     arguments : str
         Types of its result and arguments, a letter each: ``v`` nothing, ``i`` integer, ``x``
         number, ``p`` pointer to numbers, which is indexed like an array.

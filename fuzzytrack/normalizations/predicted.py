@@ -31,9 +31,9 @@ class Predicted(Normalization):
     Prediction P⁻ = ΦPΦᵀ without process noise; correction in Joseph form,
     P = (I - KH)P⁻(I - KH)ᵀ + Kσ²Kᵀ with K = (α, β/T, γ/(2T²)), which holds for any gains. At
     constant gains, T and σ, S settles at σ²(1 + ρ²), ρ² as in `fuzzytrack.gains.noise_ratio`.
-    The track is taken to start from two plots, as trackers do unless told otherwise; until then
-    E = 0. The memory is (phase, P₁₁, P₁₂, P₁₃, P₂₂, P₂₃, P₃₃, time since the first plot (s), E),
-    with a phase of 0 before the first plot, 1 before the second and 2 from then on.
+    The track is taken to start from two plots, as is the default of trackers; until then E = 0. The
+    memory is (phase, P₁₁, P₁₂, P₁₃, P₂₂, P₂₃, P₃₃, time since the first plot (s), E), with a phase
+    of 0 before the first plot, 1 before the second and 2 from then on.
     """
 
     source: ClassVar[str] = "innovation scaled by its standard deviation for the gains in use"

@@ -69,7 +69,7 @@ def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
             "The gate has no room for the error of the plot itself; it works because the size of a "
             "plot is large against its noise.",
             "With 30 steps of quality the lag behind a vessel that turns outgrows its gate, from N "
-            "of about 12 on, and the track is lost; QualityGains stops at 10 unless told so.",
+            "of about 12 on, and the track is lost; QualityGains stops at 10 by default.",
         ),
         pictures={"gains-and-gates": _picture},
     )

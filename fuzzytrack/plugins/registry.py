@@ -28,7 +28,7 @@ class Plugin:
     factory : callable
         Class, or function that makes an object of it.
     package : str
-        Package that brings it; of a script, its file.
+        Package that it comes from; for a script, its file.
     """
 
     name: str
@@ -180,7 +180,7 @@ class Registry(Generic[T]):
             self._check(point.name, factory)
         except KeyboardInterrupt:
             raise
-        # Whatever a foreign package does wrong, sys.exit included, must not take others with it.
+        # Whatever a foreign package raises, sys.exit included, must not affect other plug-ins.
         except BaseException as error:
             return f"{self.kind} {point.name!r} of package {package} could not be loaded: {error!r}"
         return Plugin(point.name, factory, package)

@@ -29,7 +29,7 @@ class Script:
     path : str
         Where it lies, without links; the file need not exist where the script is loaded.
     text : bytes
-        What it says.
+        Its text.
     """
 
     path: str
@@ -98,7 +98,7 @@ def _run(script: Script) -> None:
         exec(compile(script.text, script.path, "exec", dont_inherit=True), module.__dict__)
     except KeyboardInterrupt:
         raise
-    # sys.exit included: a script may do anything, and the user must be told where.
+    # sys.exit included: a script may do anything, and the message must name the place.
     except BaseException as error:
         del sys.modules[script.module]
         message = f"{type(error).__name__}: {getattr(error, 'msg', None) or error}"

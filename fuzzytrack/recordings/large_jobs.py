@@ -77,7 +77,7 @@ class LargeJob:
         Raises
         ------
         ValueError
-            If the tracker has no state with which it can go on from piece to piece.
+            If the tracker has no state with which it can continue from piece to piece.
         DataError
             If a column is missing, or its type differs between files.
         OSError

@@ -29,7 +29,7 @@ class TrackedPiece:
     piece : Piece
         The piece.
     outputs : mapping of str to ndarray, shape (n_rows, n_axes)
-        The outputs that were asked for, for each row of the piece: predicted, filtered, velocity,
+        The outputs in `keep`, for each row of the piece: predicted, filtered, velocity,
         acceleration, innovation, and alpha, beta, gamma; see `fuzzytrack.TrackResult`.
     """
 
@@ -107,7 +107,7 @@ class OpenTracks:
     Raises
     ------
     ValueError
-        If `keep` names an unknown output, or the tracker cannot go on from piece to piece.
+        If `keep` names an unknown output, or the tracker cannot continue from piece to piece.
     """
 
     def __init__(

@@ -44,8 +44,8 @@ def track_writer(
     inputs : tuple of str or path
         Files that must not be overwritten.
     with_gamma : bool
-        Whether to write the columns of γ. Who writes the first piece does not know whether γ is
-        zero in all others.
+        Whether to write the columns of γ. When the first piece is written, it is not known whether
+        γ is zero in all others.
     compact : bool
         Whether a small file is worth more time; see `fuzzytrack.io.table_writer`.
     progress : callable, optional

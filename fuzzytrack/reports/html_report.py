@@ -60,8 +60,8 @@ DEFINITIONS = {
     "NIS, NEES": (
         "Normalized innovation squared and normalized estimation error squared: squared errors in "
         "units of the variance that the filter presumes. A consistent filter has a mean equal to "
-        "the number of axes; more says that it trusts itself too much, less too little. Only where "
-        "the scenario states the acceleration noise that is presumed."
+        "the number of axes; a larger one means that its variances are too small, a smaller one "
+        "too large. Only where the scenario states the acceleration noise that is presumed."
     ),
 }
 

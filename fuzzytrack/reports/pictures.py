@@ -53,8 +53,8 @@ CAPTIONS = {
     "consistency": (
         "Consistency",
         "Normalized innovation squared, mean over runs at each scan. A filter whose presumed "
-        "noise is right stays in the band in 95 % of scans; above it trusts itself too much, "
-        "below too little. Trackers without a line have no covariance to judge.",
+        "noise is right stays in the band in 95 % of scans; above it the variances are too "
+        "small, below too large. Trackers without a line have no covariance to judge.",
     ),
 }
 

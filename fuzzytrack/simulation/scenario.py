@@ -45,7 +45,7 @@ class PlotNoise:
     detection : float
         Probability of a plot in a scan, 0 < detection <= 1.
     clean : int
-        Number of plots, from the first, that are seen for certain and carry no noise.
+        Number of plots, from the first, that are certainly detected and have no noise.
 
     Raises
     ------

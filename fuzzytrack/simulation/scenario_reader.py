@@ -75,7 +75,7 @@ _NOISE_KEYS = ("correlation", "freedom")
 _FIELD_NUMBERS = ("reach", "range_sigma", "bearing_sigma")
 _FIELD_KEYS = ("detection", *_NOISE_KEYS, "linear", "sigma_from")
 
-# Keys that may stand beside the key that tells the kind of target, or of sensors.
+# Keys that may stand beside the key that names the kind of target, or of sensors.
 _TARGET_KEYS = (
     "speed",
     "acceleration",
@@ -354,7 +354,7 @@ class ScenarioReader:
     # ---------------------------------------------------------------- parts
 
     def _kind(self, node: Node, role: str, kinds: Collection[str], known: Collection[str]) -> str:
-        """The single key of a mapping that tells its kind."""
+        """The single key of a mapping that names its kind."""
         entries = self.document.entries(node, role)
         found = [word for word in entries if word in kinds]
         if len(found) > 1:

@@ -133,7 +133,7 @@ def _check_same(job: Mapping[str, str], earlier: Mapping[str, str], folder: obje
         if now != then:
             raise ValueError(
                 f"resume: {key} is {now}, in the earlier run of {folder} it was {then}; "
-                "ask for the same or choose another folder"
+                "give the same or choose another folder"
             )
 
 

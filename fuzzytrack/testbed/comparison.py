@@ -132,7 +132,7 @@ def compare(
     truth : array_like, shape (n_steps, n_axes)
         True positions (m); NaN where there is no plot.
     sigma : float
-        Standard deviation of the Gaussian noise on each axis (m), also told to the trackers.
+        Standard deviation of the Gaussian noise on each axis (m), also given to the trackers.
     runs : int
         Number of Monte Carlo runs.
     seed : int

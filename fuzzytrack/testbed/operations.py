@@ -3,7 +3,7 @@
 The convention is that of MATLAB 5, in which Llinas et al. (1998) counted their Table 5.7: an
 addition, subtraction, multiplication, division or power is one operation, and so is a square root
 or another elementary function. A comparison, a choice, a change of sign, an absolute value, a
-rounding and an assignment are not counted, unless a `Tally` is told to count them. Arithmetic on
+rounding and an assignment are not counted, unless a `Tally` is set to count them. Arithmetic on
 counted numbers is counted even if the result is an index; arithmetic on plain integers is not.
 """
 

@@ -80,7 +80,7 @@ class Results:
     nis, nees : ndarray, shape (n_trackers, runs, n_steps), or None
         Normalized innovation squared, and normalized estimation error squared of position, summed
         over axes, where the scenario presumes a `process_sigma`; NaN for runs of a tracker whose
-        covariance that alone does not tell (γ, one-point start, a recursion of its own).
+        covariance does not follow from that alone (γ, one-point start, a recursion of its own).
     sample : Sample
         Run 0 in full.
     """

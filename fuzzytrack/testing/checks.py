@@ -125,11 +125,11 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
 
     Checked are: shapes of one track and of batches, coasting on missed plots, irregular times,
     that a batch equals its tracks one by one, that streaming equals `run` to the last bit, that
-    `predict` equals a step with a missed plot and tells the innovation variance of
-    `fuzzytrack.trackers.covariance.track_covariance` where that knows the model, pickling of the
-    state in the middle of a track, determinism, that inputs are left alone, that bad input
-    raises ValueError, and of a `fuzzytrack.trackers.LaneTracker` that it is a value, what its step
-    is written with, and that it gives the same to the last bit when compiled.
+    `predict` equals a step with a missed plot and returns the innovation variance of
+    `fuzzytrack.trackers.covariance.track_covariance` where that has the same model, pickling of the
+    state in the middle of a track, determinism, that inputs are left alone, that bad input raises
+    ValueError, and of a `fuzzytrack.trackers.LaneTracker` that it is a value, what its step is
+    written with, and that it gives the same to the last bit when compiled.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a function refers to that cannot be compiled, found before a compiler sees it."""
+"""What a function refers to that cannot be compiled, found before it is compiled."""
 
 from __future__ import annotations
 

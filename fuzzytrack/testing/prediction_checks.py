@@ -52,7 +52,7 @@ def predict_equals_missed_plot(tracker: Tracker, seed: int) -> None:
 
 
 def variance_equals_track_covariance(tracker: Tracker, seed: int) -> None:
-    """The innovation variance is that of `track_covariance`, where that knows the model."""
+    """The innovation variance is that of `track_covariance`, where that has the model."""
     model = _model(tracker)
     if model is None:
         return

@@ -80,8 +80,9 @@ def kernel_answers_in_form(scheduler: GainScheduler, seed: int) -> None:
 def gains_are_stable(scheduler: GainScheduler, seed: int) -> None:
     """With the gains of no plot does the error of a filter grow by itself.
 
-    The edge of the stability region counts as inside: gains of 0 leave a plot out. Asked are the
-    kernel's memory of a track that has just started and, one plot after another, what comes of it.
+    The edge of the stability region counts as inside: with gains of 0 a plot is ignored. Checked
+    are the gains for the memory of a track that has just started and, one plot after another, for
+    the memories that follow.
     """
     if scheduler.may_be_unstable:
         return

@@ -81,7 +81,7 @@ def catalog() -> tuple[CatalogEntry, ...]:
 def as_tracker(tracker: Tracker | str) -> Tracker:
     """The tracker itself, or the one that a text names; see `make_tracker`.
 
-    Whatever takes a tracker takes a text as well, by this function.
+    Every function that takes a tracker takes a text as well, by this function.
     """
     return make_tracker(tracker) if isinstance(tracker, str) else tracker
 

@@ -68,8 +68,8 @@ _NOTES = (
     "reading of 200 [m] and 3 [deg] gives the level of tracker 1 in maneuver 1.",
     "Errors are distances between prediction and truth from the third scan on, coasted scans "
     "included. The 253 m that section 5.1 calls an RMS error is the mean of Table 5.3.",
-    "The proposed tracker and the fixed one differ by less than a standard error of 50 runs; that "
-    "it mostly improves the fixed one is not borne out.",
+    "The proposed tracker and the fixed one differ by less than a standard error of 50 runs; the "
+    "claim that it mostly improves the fixed one is not confirmed.",
     "The fixed gains are the best of a straight line of 18 scans, not of one without end. On "
     "maneuvering targets they are slow.",
     "Gains should follow the sampling time as ω₀ ~ T^0.6 to T^0.8 rather than T.",
