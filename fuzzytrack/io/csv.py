@@ -24,7 +24,7 @@ CHUNK = 5_000
 
 
 def check(file: str) -> None:
-    """Nothing has to be installed for CSV."""
+    """Do nothing: CSV needs no other package."""
 
 
 # -------------------------------------------------------------------- reading

@@ -1,4 +1,4 @@
-"""Formats of files: which there are, and tables read and written in any of them.
+"""Formats of files: their list, and tables read and written in any of them.
 
 A format is a module of this package that has the functions of `Format`. Another one, such as a
 reader of radar messages, is such a module and a line in ``_FORMATS``: recordings, their columns and

@@ -134,7 +134,7 @@ class Recording:
 
     @property
     def columns(self) -> Columns:
-        """Which columns of the file are what."""
+        """Columns of the file that are time, identity and position."""
         return Columns(self.time, self.id, self.axes)
 
 

@@ -1,6 +1,7 @@
 """Tables: named columns of numbers and words, and the checks of their cells.
 
-What all formats of files share; `fuzzytrack.io.csv` and `fuzzytrack.io.parquet` read and write it.
+Common to all formats of files; `fuzzytrack.io.csv` and `fuzzytrack.io.parquet` read and write
+tables.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ _AXES = ("X", "Y")
 _SMALL = "M1, α = 0.01"
 _LAST, _BEST, _SOFT = "M5 last", "M5 best", "M5 soft"
 
-# Relative deviation that is allowed from the paper's averages, for a scenario made after them.
+# Relative deviation from the paper's averages that is allowed, for a scenario fitted to them.
 _MADE = 0.28
 # A step of the search costs as much as hundreds of other steps: from here on compiling pays.
 _COMPILED_RUNS = 50
@@ -118,15 +118,15 @@ def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
         notes=(
             "The paper states neither tracks, noise, number of plots, window, grid, weight nor the "
             "gains of its bank. Scenario S3 is made after its averages, with about as many free "
-            "numbers as there are averages: it shows that they can be, and proves nothing.",
-            "M5 chooses each prediction by the plot that it predicts: it cannot track. What it "
-            "gains over M1 in Y comes from the large gains in its bank; one fixed α of 0.4 has it "
-            "too. Chosen by the last plot (M5 last) the bank is worse than the plots themselves; "
-            "by all plots, the older the less (M5 best, M5 soft), it is about as good as the best "
-            "fixed gain in white noise.",
+            "numbers as there are averages: it shows that they are possible, no more.",
+            "M5 chooses each prediction by the plot that it predicts: it cannot track. Its gain "
+            "over M1 in Y comes from the large α in its bank; one fixed α of 0.4 is as good. "
+            "Chosen by the last plot (M5 last) the bank is worse than the plots themselves; "
+            "by all plots, older ones with less weight (M5 best, M5 soft), it is about as good as "
+            "the best fixed gain in white noise.",
             "M4 is as far from the target in Y as M1 is, so its window must cover most of the "
             "track: it acts late, or not at all.",
-            "In X, S3 has M1 ahead of M2 and M3, which the averages do not, and it does not have "
+            "In X, M1 is better than M2 and M3 in S3, but not in the averages; and S3 lacks "
             "the large spread of the five experiments: their tracks must have differed in X.",
         ),
         pictures=_pictures(errors),

@@ -123,7 +123,7 @@ SLIPS = {
     ("Table 4", "M1 - M3 in X, average"): _ABSOLUTE,
     ("Table 4", "M2 - M3 in X, average"): _ABSOLUTE,
     ("Table 4", "M2 - M4 in X, average"): _ABSOLUTE,
-    ("Table 4", "M2 - M3 in Y, average"): _ABSOLUTE + "; M3 is worse than M2 on the average",
+    ("Table 4", "M2 - M3 in Y, average"): _ABSOLUTE + "; M3 is worse than M2 on average",
     ("Table 5", "M4 in Y, experiment 4 (%)"): "a misprint: M4 would have an RMSE of 2.79",
     ("Table 5", "M4 in Y, experiment 5 (%)"): (
         "follows from an RMSE of 278.191; Table 1 has 278.5191"

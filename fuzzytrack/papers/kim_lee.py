@@ -91,11 +91,11 @@ def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
         notes=(
             "The paper prints no numbers and its figures are not in the text we have; it names "
             "neither σ_v of the conventional tracker nor σ_D and σ_Q of its own.",
-            "Read literally, with Q = GGᵀ, the tracker latches up: large gains make the "
-            "innovations large, which keep the gains large. With Q = GGᵀσ_Q² it does what the "
+            "Read literally, with Q = GGᵀ, gains stay large after a maneuver: large gains make "
+            "large innovations, which keep the gains large. With Q = GGᵀσ_Q² it does what the "
             "paper claims; so does the self-consistent form.",
             "The claims hold against a conventional tracker tuned for 0.5 g. One tuned for the "
-            "5 g that the target flies is as good as the adaptive ones on the average.",
+            "5 g that the target flies is as good as the adaptive ones on average.",
         ),
         pictures=_pictures(results, noise),
     )

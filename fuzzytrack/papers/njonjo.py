@@ -172,7 +172,7 @@ def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
             "The acceleration gain 2γ/T² as printed is not the critically damped filter that the "
             "text describes; γ/T² is (convention mahafza).",
             "ξ = 0.64 is best for the estimate; the prediction is best at 0.60. The Kalman filter "
-            "is ahead by 2 % and 1 %, most of it from the start.",
+            "is better by 2 % and 1 %, mostly from the start.",
         ),
         pictures=_pictures(totals),
     )

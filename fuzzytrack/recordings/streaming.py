@@ -22,7 +22,7 @@ __all__ = ["OpenTracks", "TrackedPiece", "run_iter"]
 
 @dataclass(frozen=True, eq=False)
 class TrackedPiece:
-    """What a tracker made of a piece.
+    """A piece with the outputs of a tracker.
 
     Attributes
     ----------

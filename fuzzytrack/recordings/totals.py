@@ -1,4 +1,4 @@
-"""The summary of a run: sums over its tracks, and the means that people read."""
+"""The summary of a run: sums over its tracks, and means for printing."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Totals:
 
     @property
     def summary(self) -> dict[str, float]:
-        """What people read: plots, missed, duration, innovation_rms, and mean alpha and beta."""
+        """For printing: plots, missed, duration, innovation_rms, and mean alpha and beta."""
         return {
             "plots": self.plots,
             "missed": self.missed,

@@ -1,4 +1,4 @@
-"""Tracks written to a file, beside the plots that they were made of."""
+"""Tracks written to a file, with the plots that they were made of."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def write_tracks(
     recording : Recording
         The plots, track by track.
     results : sequence of TrackResult
-        What a tracker made of each track.
+        Result of each track.
     progress : callable, optional
         Called with the share that has been written.
 

@@ -34,7 +34,7 @@ DEFINITIONS = {
     "Scored scans": (
         "Scans that count: those from the first scored one on in which every tracker has a "
         "prediction, so that all are judged on the same scans. Scans without a plot, in which "
-        "trackers coast, are among them."
+        "trackers coast, are included."
     ),
     "Error": (
         "Distance, over all axes, between an estimated and the true position. The predicted "
@@ -53,7 +53,7 @@ DEFINITIONS = {
     "Change against the first": (
         "The RMSE of prediction of each run, minus that of the first tracker in the same run; mean "
         "over runs, with its confidence interval (Student t). Negative is better than the first. "
-        "If the interval leaves out 0, the difference is more than chance."
+        "If the interval does not contain 0, the difference is significant."
     ),
     "±": "What follows is the standard error: what another set of runs would typically change.",
     "Velocity RMSE": "As RMSE, of the filtered velocity.",

@@ -32,7 +32,7 @@ _WITHOUT_EFFECT = ("name", "source", "trackers", "first_scored")
 class ChunkStore:
     """Finished chunks of one job; made by `open`.
 
-    A file is there whole or not at all, and says which job it is of.
+    A file is complete or does not exist, and names its job.
 
     Attributes
     ----------

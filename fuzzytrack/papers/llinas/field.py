@@ -168,9 +168,9 @@ def table_rows(found: dict[str, Results]) -> list[Row]:
 
 
 _WHY = {
-    T2: "gains are not in print; ours are a fit to the table",
-    T3: "Chan's rules are not in print; ours are in his manner",
-    T5: "the process noise is not in print; q = 0.002 (m/s²)² is a fit to the table",
+    T2: "gains are not printed; ours are a fit to the table",
+    T3: "Chan's rules are not printed; ours follow his method",
+    T5: "the process noise is not printed; q = 0.002 (m/s²)² is a fit to the table",
 }
 
 
@@ -233,7 +233,7 @@ def finer_rows(runs: int, seed: int, slower: Results, progress: Progress) -> lis
 
 _FINER = (
     "the maneuver is not stated, M4 is taken; the direction agrees. The published variance of "
-    "tracker 1 seems to lack a digit"
+    "tracker 1 seems to miss a digit"
 )
 
 
@@ -264,7 +264,7 @@ def far_rows(runs: int, seed: int, progress: Progress) -> list[Row]:
 
 
 _ORDER = (
-    "starts, courses and lengths of these tracks are not in print: ours are drawn at random, with "
+    "starts, courses and lengths of these tracks are not printed: ours are drawn at random, with "
     "5 plots at least, and only the order of magnitude, a factor of √10, is compared"
 )
 _SCANS = {"medium": 20, "sparse": 40}
@@ -364,4 +364,4 @@ def visited_rows(found: dict[str, Gains], runs: int) -> list[Row]:
     return rows
 
 
-_CLOUD = "the figure's points are not in print; they are said to lie about α = 0.5377, β = 0.2018"
+_CLOUD = "the figure's points are not printed; they are said to lie about α = 0.5377, β = 0.2018"

@@ -5,16 +5,16 @@ Its numbers all pass through `number`, so that `fuzzytrack.testbed.operations.co
 count them in the convention written there: operations as in MATLAB 5. They are the report's
 equations as printed, which means in particular
 
-- the innovation x_o - x_p is worked out wherever it is written;
-- a fraction in an equation, like the 1/2 of Eq. 2.35, is a division;
-- a predicted quantity is stored under its index k + 1, which is an addition; smoothed ones are
+- the innovation x_o - x_p is computed wherever it is written; - a fraction in an equation, like the
+1/2 of Eq. 2.35, is a division; - a predicted quantity is stored under its index k + 1, which is an
+addition; smoothed ones are
   overwritten, and a plot comes without an index;
 - the two points of a start cost what Eq. 2.5 costs, once an axis; the Kalman programs are handed
   their start.
 
 So an update costs 13 an axis without acceleration and 27 with, of which 3 are half a distance. The
-report does not print its programs: which indices count, and that the 1/2 does, is a uniform
-reading that meets its totals (470 and 974 there: with the start of a single axis).
+report does not print its programs: which indices count, and that the 1/2 does, is a uniform reading
+that gives its totals (470 and 974 there: with the start of a single axis).
 """
 
 from __future__ import annotations
@@ -317,8 +317,7 @@ def kalman_matrix(
     sigma, sigma_v : float
         Standard deviations of the plots (m) and of the target's acceleration (m/s²).
     joseph : bool
-        Whether P is (I - KH)P⁻(I - KH)ᵀ + K R Kᵀ, worked out as it is written, instead of
-        (I - KH)P⁻.
+        Whether P is (I - KH)P⁻(I - KH)ᵀ + K R Kᵀ, computed as it is written, instead of (I - KH)P⁻.
     """
     axes = _axes(plots, truth, number)
     (p0, q0), r = _kalman_start(dt, sigma, sigma_v), number(sigma**2)

@@ -59,9 +59,9 @@ def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
 
 
 _NOTES = (
-    "Starts, courses, speeds, acceleration and radius of the maneuvers are not in print; ours are "
+    "Starts, courses, speeds, acceleration and radius of the maneuvers are not printed; ours are "
     "a fit to Table 5.3, about 20 numbers for its 40. Two results do not depend on the fit: which "
-    "tracker is ahead in which maneuver, and that trackers 1 and 4 are level.",
+    "tracker is better in which maneuver, and that trackers 1 and 4 are equal.",
     "A published mean or variance matches if it is within two standard errors of an average over "
     "50 runs, the report's number, taken from the spread of our runs, and two of our own.",
     "Noise is read as a range variance of 200 m² and a bearing variance of 3π/180 rad²: no other "
@@ -70,7 +70,7 @@ _NOTES = (
     "included. The 253 m that section 5.1 calls an RMS error is the mean of Table 5.3.",
     "The proposed tracker and the fixed one differ by less than a standard error of 50 runs; the "
     "claim that it mostly improves the fixed one is not confirmed.",
-    "The fixed gains are the best of a straight line of 18 scans, not of one without end. On "
+    "The fixed gains are the best for a straight line of 18 scans, not for an endless one. On "
     "maneuvering targets they are slow.",
     "Gains should follow the sampling time as ω₀ ~ T^0.6 to T^0.8 rather than T.",
 )

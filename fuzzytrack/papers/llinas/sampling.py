@@ -1,7 +1,7 @@
 """Llinas et al. (1998): gains and sampling time, process noise, origin of the "optimal" gains.
 
-A filter whose gains do not depend on the plots is linear. The error of its prediction is that
-without noise plus the noise it lets through, and both are known without drawing any.
+A filter whose gains do not depend on the plots is linear. The error of its prediction is the error
+without noise plus the noise in the output, and both are known without random numbers.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def second_differences_filtered(alpha: float, beta: float, values: Array) -> Arr
     alpha, beta : float
         The gains.
     values : ndarray, shape (n_steps, ...)
-        What it is fed.
+        Its input.
 
     Notes
     -----
@@ -303,7 +303,7 @@ def appendix_rows() -> list[Row]:
 
 
 _APPENDIX = (
-    "the figure's numbers are not in print; it has a minimum for the accelerating target, as here "
+    "the figure's numbers are not printed; it has a minimum for the accelerating target, as here "
     "for every target that accelerates"
 )
 
