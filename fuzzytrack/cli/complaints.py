@@ -48,7 +48,7 @@ class Commands(TyperGroup):
                 status = super().main(*args, **extra)
             except (OSError, ValueError) as error:
                 sys.exit(_complain(one_line(error), 2))
-            # Wrong usage; where its class lives depends on the version of typer.
+            # Wrong usage; the module of its class depends on the version of typer.
             except Exception as error:
                 if not hasattr(error, "format_message"):
                     raise

@@ -122,7 +122,9 @@ def explain(
 @rulebase.command("set")
 def set_(
     file: Annotated[str, typer.Argument(metavar="FILE", help="The rule base.")],
-    says: Annotated[str, typer.Argument(metavar="SAYS", help="New conclusion of the rule: M-Z.")],
+    says: Annotated[
+        str, typer.Argument(metavar="CONCLUSION", help="New conclusion of the rule: M-Z.")
+    ],
     cell: Annotated[
         str, typer.Option(metavar="dE=ns,E=pl", help="The conditions of the rule, all of them.")
     ],

@@ -93,14 +93,14 @@ def print_explanation(system: FuzzySystem, found: dict[str, Any]) -> None:
         universe = system.rules.input(name).universe
         if not universe.low <= value <= universe.high:
             end = universe.low if value < universe.low else universe.high
-            say(f"{name} = {value:g} is outside its universe and taken as {end:g}")
+            say(f"{name} = {value:g} is outside its universe; {end:g} is used")
     rules = system.rules.rules
     rows = [
         [str(f["number"]), f"{f['strength']:.4f}", str(rules[f["number"] - 1])]
         for f in found["rules"]
     ]
     if rows:
-        print_table(["rule", "strength", "says"], rows, words=3)
+        print_table(["rule", "strength", "text"], rows, words=3)
     else:
         say("no rule fires here")
     say()

@@ -1,4 +1,4 @@
-"""CSV: read part by part, with the line of every complaint, and written part by part."""
+"""CSV: read part by part, with the line of every error, and written part by part."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 A format is a module of this package that has the functions of `Format`. Another one, such as a
 reader of radar messages, is such a module and a line in ``_FORMATS``: recordings, their columns and
-their complaints come from `fuzzytrack.io.recording`, which knows `Source` only.
+their errors come from `fuzzytrack.io.recording`, which uses `Source` only.
 """
 
 from __future__ import annotations

@@ -346,7 +346,7 @@ def _tracks(piece: Piece, columns: Columns, sort: bool) -> tuple[Track, ...]:
 
 
 def _time_error(piece: Piece, columns: Columns, before: int, here: int) -> DataError:
-    """Complaint about the time of a row that is not later than that of the row before."""
+    """Error about the time of a row that is not later than that of the row before."""
     times, rows = piece.time, piece.rows
     id = piece.ids[here]
     whose = f" (id {id!r})" if id else ""

@@ -197,7 +197,7 @@ class Column:
         raise self.error(row, cell)
 
     def error(self, row: int, cell: str) -> DataError:
-        """Complaint about a cell that does not hold what it must."""
+        """Error about a cell that does not hold what it must."""
         shown = repr(cell if len(cell) <= 40 else cell[:40] + "…") if cell else "an empty cell"
         return DataError(
             f"{self.file}: row {row}, column {self.name}: {shown}; expected {_EXPECTED[self.kind]}"
@@ -229,7 +229,7 @@ def _is_numeric(name: str) -> bool:
 
 
 def no_rows(file: str) -> DataError:
-    """Complaint about a file that holds nothing but the names of its columns."""
+    """Error about a file that holds only the names of its columns."""
     return DataError(f"{file}: holds no rows, only column names")
 
 

@@ -1,4 +1,4 @@
-"""Floating-point operations of a tracker, counted by running its arithmetic on numbers that count.
+"""Floating-point operations of a tracker, counted by running it on numbers that record them.
 
 The convention is that of MATLAB 5, in which Llinas et al. (1998) counted their Table 5.7: an
 addition, subtraction, multiplication, division or power is one operation, and so is a square root
@@ -53,7 +53,7 @@ class Tally:
 
 
 class Counted:
-    """A number that reports every operation on it to a `Tally`; made by `Tally.number`.
+    """A number whose operations are counted by a `Tally`; made by `Tally.number`.
 
     Results of arithmetic are counted numbers again, those of comparisons are plain. A counted
     number that is whole can be an index.
@@ -355,7 +355,7 @@ def _counting(
 def _elementary(value: Any, tally: Tally) -> Any:
     """A function of `math` that counts as one operation; its constants and anything else unchanged.
 
-    Questions such as `math.isnan`, and rounding, are not counted.
+    Tests such as `math.isnan`, and rounding, are not counted.
     """
     free = (math.isnan, math.isinf, math.isfinite, math.floor, math.ceil, math.trunc)
     if getattr(value, "__module__", None) != "math" or not callable(value):

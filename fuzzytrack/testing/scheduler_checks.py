@@ -151,7 +151,7 @@ def _arguments(scheduler: GainScheduler, innovation: float, change: float) -> tu
 
 
 def _sample_arguments(scheduler: GainScheduler) -> Iterator[tuple[str, tuple[Any, ...]]]:
-    """What a kernel may be called with, and words for it."""
+    """Arguments that a kernel may be called with, and a text that describes them."""
     for innovation in _MAGNITUDES:
         for change in _MAGNITUDES:
             where = f"kernel at innovation {innovation:g}, change {change:g}"

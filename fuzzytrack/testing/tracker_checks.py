@@ -47,7 +47,7 @@ def hashable(subject: GainScheduler | LaneTracker, seed: int) -> None:
 
 
 def equals_pickled_copy(subject: GainScheduler | LaneTracker, seed: int) -> None:
-    """It can be sent to another process, and is known there for the same."""
+    """It can be sent to another process, and its copy is equal to it."""
     name = type(subject).__name__
     try:
         copy = pickle.loads(pickle.dumps(subject))
@@ -145,7 +145,7 @@ def streaming_equals_run(tracker: Tracker, seed: int) -> None:
 
 
 def bad_input_is_refused(tracker: Tracker, seed: int) -> None:
-    """What cannot be tracked raises ValueError."""
+    """Plots and times that cannot be tracked raise ValueError."""
     times, batch = sample_plots(seed)
     plots = batch[:, 0]
     infinite, repeated = plots.copy(), times.copy()

@@ -158,8 +158,8 @@ def test_explain(run):
 
 def test_explain_outside_and_silent(run, csv):
     text = run("rulebase", "explain", csv(LIST, "a.yaml"), "--at", "a=-3,b=7,c=0").stdout
-    assert "a = -3 is outside its universe and taken as 0" in text
-    assert "b = 7 is outside its universe and taken as 1" in text
+    assert "a = -3 is outside its universe; 0 is used" in text
+    assert "b = 7 is outside its universe; 1 is used" in text
     assert "out = 0.3" in text
     silent = run("rulebase", "explain", csv(LIST, "a.yaml"), "--at", "a=1,b=0,c=0").stdout
     assert "no rule fires here" in silent
