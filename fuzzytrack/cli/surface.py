@@ -27,9 +27,9 @@ def surface(
         typer.Option("--output", "-o", metavar="FILE.png", help="Draw it (or .pdf, .svg…)."),
     ] = None,
     csv: Annotated[
-        str | None, typer.Option(metavar="FILE.csv", help="Write it, one row a grid point.")
+        str | None, typer.Option(metavar="FILE.csv", help="Write it, one row for each grid point.")
     ] = None,
-    points: Annotated[int, typer.Option(min=2, max=MAX_POINTS, help="Points an axis.")] = 101,
+    points: Annotated[int, typer.Option(min=2, max=MAX_POINTS, help="Points on each axis.")] = 101,
     method: Annotated[str, typer.Option(metavar="M", help="exact, relation or table.")] = "exact",
     at: Annotated[
         str | None,

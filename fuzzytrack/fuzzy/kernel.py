@@ -1,9 +1,9 @@
 """A fuzzy system as one straight-line scalar function.
 
-A tracker calls its rule base once an update, so the rule base is written out as Python source with
-its numbers in place: no loops over rules, no look-ups by name, no arrays but constant tables. The
-same function runs in plain Python and, compiled, in the batch runner. Names from rule bases never
-enter the source, only numbers do.
+A tracker calls its rule base once for each update, so the rule base is written out as Python source
+with its numbers in place: no loops over rules, no look-ups by name, no arrays but constant tables.
+The same function runs in plain Python and, compiled, in the batch runner. Names from rule bases
+never enter the source, only numbers do.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Where neighboring sets cross, one rises as the other falls, so a grade is the difference of two
 ramps, each 0 below an interval and 1 above it. With products as AND and sums as OR, an output is
-then a sum over products of ramps, one an input, whose weights are differences of neighboring
+then a sum over products of ramps, one for each input, whose weights are differences of neighboring
 cells of the rule table. Most of these weights are zero, and neither look-ups of rules nor divisions
 are needed.
 """

@@ -245,7 +245,7 @@ def _table() -> Schema:
             "oneOf": [names, {"type": "array", "minItems": 1, "uniqueItems": True, "items": names}],
         },
         "table": {
-            "description": "For each row its cells, one a column.",
+            "description": "For each row its cells, one for each column.",
             "type": "object",
             "minProperties": 1,
             "additionalProperties": row,

@@ -78,8 +78,8 @@ class FuzzySystem:
     fuzzification : Fuzzification, optional
         Singleton unless given.
     table_nodes : int, optional
-        Nodes an input for ``method="table"``; 2001 for one input, 201 for two, and fewer for more
-        (about 40,000 in all) unless given.
+        Nodes on each input for ``method="table"``; 2001 for one input, 201 for two, and fewer for
+        more (about 40,000 in all) unless given.
 
     Raises
     ------
@@ -137,7 +137,7 @@ class FuzzySystem:
         Parameters
         ----------
         **inputs : array_like
-            One value an input, by name; they broadcast.
+            One value for each input, by name; they broadcast.
 
         Returns
         -------
@@ -273,7 +273,7 @@ class FuzzySystem:
         Parameters
         ----------
         **inputs : float
-            One number an input, by name.
+            One number for each input, by name.
 
         Returns
         -------
@@ -345,7 +345,7 @@ class FuzzySystem:
         output : str
             Name of the output.
         points : int
-            Points an axis, at least 2.
+            Points on each axis, at least 2.
         inputs : (str, str), optional
             The two inputs; the first two unless given.
         at : mapping, optional

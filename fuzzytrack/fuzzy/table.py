@@ -51,14 +51,14 @@ class InterpolationTable:
 
 
 def default_nodes(n_inputs: int) -> int:
-    """Nodes an input that keep a table to about 40,000 in all."""
+    """Nodes on each input that keep a table to about 40,000 in all."""
     return 2001 if n_inputs == 1 else max(2, round(40_401 ** (1 / n_inputs)))
 
 
 def build_table(
     rulebase: RuleBase, evaluate: Callable[[Array], dict[str, Array]], nodes: int
 ) -> InterpolationTable:
-    """Tabulate `evaluate` on `nodes` points an input and measure the interpolation error.
+    """Tabulate `evaluate` on `nodes` points on each input and measure the interpolation error.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def build_table(
     evaluate : callable
         ``evaluate(points)``, points of shape (n, n_inputs), to a dict of arrays of shape (n,).
     nodes : int
-        Nodes an input.
+        Nodes on each input.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def build_table(
     n_inputs = len(rulebase.inputs)
     if nodes < 2 or float(nodes) ** n_inputs > MAX_NODES:
         raise ValueError(
-            f"table: {nodes} nodes on each of {n_inputs} inputs; at least 2 nodes an input and "
+            f"table: {nodes} nodes on each of {n_inputs} inputs; at least 2 nodes on each and "
             f"at most {MAX_NODES} in all are allowed"
         )
     axes = tuple(np.linspace(v.universe.low, v.universe.high, nodes) for v in rulebase.inputs)

@@ -131,9 +131,9 @@ class Runner:
         lanes : ndarray, shape (rows.kept, lanes)
         plots : ndarray, shape (lanes, n_axes)
         dts : list of float
-            One a lane.
+            One for each lane.
         sigmas : list of list of float
-            One an axis for each lane.
+            For each lane one for each axis.
 
         Returns
         -------

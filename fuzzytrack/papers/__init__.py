@@ -1,6 +1,6 @@
 """Experiments of published papers, rebuilt, with published and own numbers side by side.
 
-One module a paper, each with a function ``reproduce(runs, seed, progress)``; `PAPERS` names them.
+One module for each paper, with a function ``reproduce(runs, seed, progress)``; `PAPERS` names them.
 """
 
 from fuzzytrack.papers.catalog import PAPERS, reproduce

@@ -117,7 +117,7 @@ def kalman_gains(
 
 @dataclass(frozen=True, eq=False)
 class _Totals:
-    """Cumulative errors (m), one a run."""
+    """Cumulative errors (m), one for each run."""
 
     predicted: Array
     estimated: Array

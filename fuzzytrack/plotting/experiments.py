@@ -48,7 +48,7 @@ def plot_error_over_time(
     unit: str = "m",
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Error over time, one line a tracker, with bands of its uncertainty.
+    """Error over time, one line for each tracker, with bands of its uncertainty.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def plot_error_distribution(
     unit: str = "m",
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Share of errors that stay below a size, one line a tracker.
+    """Share of errors that stay below a size, one line for each tracker.
 
     Parameters
     ----------
@@ -327,7 +327,7 @@ def plot_consistency(
     what: str = "NIS, mean over runs",
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Normalized squared errors over time, one line a tracker, and the range of a consistent one.
+    """Normalized squared errors of trackers over time, and the range of a consistent one.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ def plot_memberships(
     *,
     axes: Axes | Sequence[Axes] | None = None,
 ) -> tuple[Figure, shared.AxesArray]:
-    """Membership functions, one panel a variable.
+    """Membership functions, one panel for each variable.
 
     Parameters
     ----------
@@ -36,13 +36,13 @@ def plot_memberships(
     variables : str or sequence of str, optional
         Names of inputs and outputs; all, inputs first, unless given.
     axes : Axes or sequence of Axes, optional
-        Axes to draw into, one a variable.
+        Axes to draw into, one for each variable.
 
     Returns
     -------
     figure : Figure
     axes : ndarray of Axes
-        One a variable.
+        One for each variable.
 
     Raises
     ------

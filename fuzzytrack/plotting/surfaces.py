@@ -61,7 +61,7 @@ def plot_surface(
     output : str, optional
         Name of one output; all unless given.
     points : int
-        Points an axis, at least 2.
+        Points on each axis, at least 2.
     method : {"exact", "relation", "table"}, optional
         As for `fuzzytrack.fuzzy.system.FuzzySystem`; that of the system, ``exact`` for a rule base.
     style : {"surface", "contour"}
@@ -71,13 +71,14 @@ def plot_surface(
     at : mapping, optional
         Values of the other inputs, where there are more than two.
     axes : Axes or sequence of Axes, optional
-        Axes to draw into, one an output; made with ``projection="3d"`` for ``style="surface"``.
+        Axes to draw into, one for each output; made with ``projection="3d"`` for
+        ``style="surface"``.
 
     Returns
     -------
     figure : Figure
     axes : ndarray of Axes
-        One an output.
+        One for each output.
 
     Raises
     ------
@@ -119,19 +120,19 @@ def plot_gain_surfaces(
         Kalata's gains, converted to α and β in the w-domain; or with outputs ``alpha`` and
         ``beta``, and maybe ``gamma``, drawn as they are.
     points : int
-        Points an axis, at least 2.
+        Points on each axis, at least 2.
     method : {"exact", "relation", "table"}, optional
         As for `plot_surface`.
     style : {"surface", "contour"}
         As for `plot_surface`.
     axes : Axes or sequence of Axes, optional
-        Axes to draw into, one a gain; as for `plot_surface`.
+        Axes to draw into, one for each gain; as for `plot_surface`.
 
     Returns
     -------
     figure : Figure
     axes : ndarray of Axes
-        One a gain.
+        One for each gain.
 
     Raises
     ------

@@ -157,7 +157,7 @@ def plot_errors(
     *,
     ax: Axes | None = None,
 ) -> tuple[Figure, Axes]:
-    """Prediction error over time, one line a tracker.
+    """Prediction error over time, one line for each tracker.
 
     Parameters
     ----------

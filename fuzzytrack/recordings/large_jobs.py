@@ -131,7 +131,7 @@ class LargeJob:
         Parameters
         ----------
         output : str or path
-            Folder for the tracks, one file a partition.
+            Folder for the tracks, one file for each partition.
         jobs, scheduler
             Who does the work; see `fuzzytrack.workers.workers`.
         partitions : int

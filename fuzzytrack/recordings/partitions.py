@@ -69,8 +69,8 @@ def track_partitions(
     columns : Columns
         From `fuzzytrack.io.find_columns`.
     output : str or path
-        Folder to be made, with one Parquet file a partition, ``part-00000.parquet`` and on; see
-        `fuzzytrack.recordings.track_writer`. It appears whole or not at all.
+        Folder to be made, with one Parquet file for each partition, ``part-00000.parquet`` and on;
+        see `fuzzytrack.recordings.track_writer`. It appears whole or not at all.
     sigma : float, optional
         Standard deviation of the plots (m).
     partitions : int
@@ -95,10 +95,10 @@ def track_partitions(
 
     Notes
     -----
-    First each input file is sorted into partitions, a task a file; then each partition is tracked
-    through all files, a task a partition, with the states of its own tracks only. A task reads
-    files and writes one, whole or not at all, so it can be repeated on any worker when the first
-    one is lost. Until the end the disk holds a second copy of the plots.
+    First each input file is sorted into partitions, a task for each file; then each partition is
+    tracked through all files, a task for each partition, with the states of its own tracks only. A
+    task reads files and writes one, whole or not at all, so it can be repeated on any worker when
+    the first one is lost. Until the end the disk holds a second copy of the plots.
 
     All rows of a track are in one file, in order of time, with the same numbers as in one run; rows
     of different tracks are in the order of the recording.

@@ -102,7 +102,7 @@ def run_tracks(
     Returns
     -------
     list of TrackResult
-        One a track; the state is None where several tracks were run together.
+        One for each track; the state is None where several tracks were run together.
 
     Raises
     ------

@@ -211,7 +211,7 @@ def _facts(results: Results) -> str:
 
 
 def _errors(results: Results) -> str:
-    """Table of errors, a row a tracker."""
+    """Table of errors, a row for each tracker."""
     first, *_ = results.names
     peak = results.peak()
     columns = {

@@ -68,7 +68,7 @@ class GainScheduler(ABC):
         (1 in every classical filter), and the new memory, of the same length. Gamma is the one
         whose acceleration gain is γ/(2T²); unless the scheduler `uses_acceleration`, it is 0 and
         phi is dropped. Of a coupled scheduler the first, second and fourth arguments are tuples
-        with one float an axis.
+        with one float for each axis.
 
         Where a plot is missing, or a two-point start still waits for the second one, the function
         is called with zeros (and a sigma of 1) and its result is not used; so an innovation is

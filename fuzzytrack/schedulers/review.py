@@ -102,7 +102,7 @@ def grid_table(system: FuzzySystem, points: int, at: Mapping[str, float]) -> dic
     ----------
     system : FuzzySystem
     points : int
-        Points an axis.
+        Points on each axis.
     at : mapping of str to float
         Values of the other inputs.
 

@@ -101,7 +101,7 @@ class Plots:
 
 
 def streams(seed: int, runs: int) -> list[np.random.SeedSequence]:
-    """Random streams of Monte Carlo runs, one a run.
+    """Random streams of Monte Carlo runs, one for each run.
 
     Parameters
     ----------
@@ -140,7 +140,8 @@ def noisy_plots(
     truth : array_like, shape (n_steps, n_axes) or (n_steps, n_runs, n_axes)
         True positions (m), the same in all runs or each run's own; NaN where there is no plot.
     sigma : array_like
-        Standard deviation (m), broadcast against (n_steps, n_runs, n_axes): a number, one an axis.
+        Standard deviation (m), broadcast against (n_steps, n_runs, n_axes): a number, one for each
+        axis.
     runs : sequence of SeedSequence
         Random stream of each run; see `streams`.
     noise : Noise

@@ -1,4 +1,4 @@
-"""Simulated plots and true tracks of a scenario as the columns of a table, a row a plot."""
+"""Simulated plots and true tracks of a scenario as the columns of a table, a row for each plot."""
 
 from __future__ import annotations
 

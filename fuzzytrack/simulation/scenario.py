@@ -39,7 +39,7 @@ class PlotNoise:
     Parameters
     ----------
     sigma : float or sequence of float
-        Standard deviation (m), a number or one an axis, > 0.
+        Standard deviation (m), a number or one for each axis, > 0.
     noise : Noise
         Kind of noise.
     detection : float

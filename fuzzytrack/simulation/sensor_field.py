@@ -31,11 +31,11 @@ class SensorField:
     position : array_like, shape (n_sensors, 2)
         Positions of the sensors (m); at least one.
     reach : array_like
-        Largest range at which each sees a target (m); a number, or one a sensor.
+        Largest range at which each sees a target (m); a number, or one for each sensor.
     range_sigma : array_like
-        Standard deviation of a measured range (m); a number, or one a sensor.
+        Standard deviation of a measured range (m); a number, or one for each sensor.
     bearing_sigma : array_like
-        Standard deviation of a measured bearing (rad); a number, or one a sensor.
+        Standard deviation of a measured bearing (rad); a number, or one for each sensor.
     detection : float
         Probability that a sensor detects a target within its reach in a scan, 0 < detection <= 1.
 
@@ -80,7 +80,7 @@ class SensorField:
             each = positive(name, value)
             if each.shape not in ((), (len(places),)):
                 raise ValueError(
-                    f"{name} must be a number or {len(places)}, one a sensor; "
+                    f"{name} must be a number or {len(places)}, one for each sensor; "
                     f"got shape {each.shape}"
                 )
             object.__setattr__(self, name, _frozen(np.broadcast_to(each, (len(places),))))

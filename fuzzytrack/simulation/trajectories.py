@@ -278,7 +278,7 @@ def waypoints(
         passed = finite("times", times)
         if passed.shape != (len(places),) or not (np.diff(passed) > 0).all():
             raise ValueError(
-                f"times must be {len(places)} increasing numbers, one a way-point; "
+                f"times must be {len(places)} increasing numbers, one for each way-point; "
                 f"got {passed.tolist()}"
             )
     dt = float(positive("period", period))

@@ -385,7 +385,7 @@ class Results:
         )
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Curves as a table, a row a tracker and scan.
+        """Curves as a table, a row for each tracker and scan.
 
         Returns
         -------

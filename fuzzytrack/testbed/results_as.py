@@ -63,7 +63,7 @@ def json_dict(
 
 
 def data_frame(names: Sequence[str], time: Array, curves: Mapping[str, Array]) -> pandas.DataFrame:
-    """Curves as a table, a row a tracker and scan.
+    """Curves as a table, a row for each tracker and scan.
 
     Parameters
     ----------

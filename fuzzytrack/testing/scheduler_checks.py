@@ -1,4 +1,4 @@
-"""What every gain scheduler promises, a function a promise."""
+"""What every gain scheduler promises, a function for each promise."""
 
 from __future__ import annotations
 

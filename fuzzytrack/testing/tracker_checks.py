@@ -1,4 +1,4 @@
-"""What every tracker promises, and every `LaneTracker`, a function a promise."""
+"""What every tracker promises, and every `LaneTracker`, a function for each promise."""
 
 from __future__ import annotations
 

@@ -263,7 +263,7 @@ def step_function(pair: ModelPair, rows: Rows, stride: int) -> Callable[[Any, in
 def _lane_passes(
     pair: ModelPair, rows: Rows, stride: int
 ) -> tuple[Callable[[Any, int], None], Callable[[Any, int], None], Callable[[Any, int], None]]:
-    """What is done once a lane: before the models are predicted, corrected, and at the end."""
+    """Functions that run once for each lane: before prediction, before correction, at the end."""
     n_axes, nan = rows.n_axes, math.nan
     quiet_stay, maneuver_stay, floor = pair.quiet_stay, pair.maneuver_stay, pair.floor
     quiet_row, maneuver_row, gains_row = rows.memory, rows.memory + 1, rows.gains
@@ -334,7 +334,7 @@ def _lane_passes(
 def _axis_passes(
     pair: ModelPair, rows: Rows, stride: int
 ) -> tuple[Callable[[Any, int, int], None], Callable[[Any, int, int], None]]:
-    """What is done for each axis of a lane: prediction of the models, and their correction."""
+    """Functions that run for each axis of a lane: prediction of the models, and correction."""
     nan = math.nan
     quiet_q, maneuver_q, accelerates = (
         pair.quiet_variance, pair.maneuver_variance, pair.accelerates

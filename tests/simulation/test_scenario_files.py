@@ -417,7 +417,7 @@ FIELD = "reach: 1000, range_sigma: 10, bearing_sigma: 1"
         (
             "{positions: [[0, 0]], reach: [1, 2], range_sigma: 10, bearing_sigma: 1}",
             39,
-            "reach must be a number or 1, one a sensor",
+            "reach must be a number or 1, one for each sensor",
         ),
     ],
 )

@@ -154,7 +154,10 @@ def test_missing_scans_of_the_canonical_maneuvers():
         ({"position": [0.0, 1.0]}, "position must have shape"),
         ({"position": [[0.0, math.inf]]}, "position must be finite"),
         ({"reach": 0.0}, "reach must be finite and > 0, got 0"),
-        ({"reach": [1.0, 2.0]}, r"reach must be a number or 1, one a sensor; got shape \(2,\)"),
+        (
+            {"reach": [1.0, 2.0]},
+            r"reach must be a number or 1, one for each sensor; got shape \(2,\)",
+        ),
         ({"range_sigma": -1.0}, "range_sigma must be finite and > 0, got -1"),
         ({"bearing_sigma": math.nan}, "bearing_sigma must be finite and > 0, got nan"),
         ({"detection": 0.0}, "detection must be > 0 and <= 1, got 0.0"),

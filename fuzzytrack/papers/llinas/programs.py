@@ -5,11 +5,11 @@ Its numbers all pass through `number`, so that `fuzzytrack.testbed.operations.co
 count them in the convention written there: operations as in MATLAB 5. They are the report's
 equations as printed, which means in particular
 
-- the innovation x_o - x_p is computed wherever it is written; - a fraction in an equation, like the
-1/2 of Eq. 2.35, is a division; - a predicted quantity is stored under its index k + 1, which is an
-addition; smoothed ones are
+- the innovation x_o - x_p is computed wherever it is written;
+- a fraction in an equation, like the 1/2 of Eq. 2.35, is a division;
+- a predicted quantity is stored under its index k + 1, which is an addition; smoothed ones are
   overwritten, and a plot comes without an index;
-- the two points of a start cost what Eq. 2.5 costs, once an axis; the Kalman programs are handed
+- the two points of a start cost what Eq. 2.5 costs, once for each axis; the Kalman programs get
   their start.
 
 So an update costs 13 an axis without acceleration and 27 with, of which 3 are half a distance. The
