@@ -18,7 +18,7 @@ what may change with any release:
   code by its content. When they change, compiling fails with an `AttributeError` or `ImportError`,
   or code is compiled anew in every process.
 - Function attributes, metadata and blocks of ``llvmlite.ir``, and ``numba.core.cgutils``: to tell
-  LLVM that loops may use wide vectors and have independent turns. When they change, compiling
+  LLVM that loops may use wide vectors and have independent iterations. When they change, compiling
   fails, or the code becomes several times slower with the same results.
 - ``_Intrinsic._defn``, in `rebuild`: the content of an intrinsic.
 

@@ -24,10 +24,10 @@ def use_wide_vectors() -> None:
 
 
 def promise_independent_turns() -> None:
-    """Promise that no turn of the calling function's loops reads what another turn writes.
+    """Promise that no iteration of the calling function's loops reads what another one writes.
 
-    Then the compiler works on two vectors in each turn: while one waits for a division, the other
-    is worked on. It cannot find this out by itself, since all rows lie in one buffer.
+    Then the compiler works on two vectors in each iteration: while one waits for a division, the
+    other is computed. It cannot find this out by itself, since all rows lie in one buffer.
 
     Call it after the loops. The last statement of a loop must not be a call: a call ends with a
     check of its status, and the promise would be lost with the branch that the check adds.

@@ -33,7 +33,7 @@ __all__ = ["c_function", "call", "keep_on_disk", "pointer", "word_for_compiler"]
 _SCHEME = 5
 _MADE_BY = (_SCHEME, sys.implementation.cache_tag, numba.__version__, llvmlite.__version__)
 
-#: Vectors that the compiler works on in each turn of a loop.
+#: Vectors that the compiler works on in each iteration of a loop.
 _VECTORS = 2
 
 

@@ -31,11 +31,11 @@ def function(targets):
     [
         ([()], []),
         ([(1, 2), (3,), (3,), ()], []),
-        # A loop, whose beginning is not written yet, with two ways through a turn.
+        # A loop, whose beginning is not written yet, with two ways through an iteration.
         ([None, (2,), (3, 6), (4, 5), (5,), (2,), ()], [5]),
         # A loop within a loop.
         ([(1,), (2, 5), (3, 4), (2,), (1,), ()], [3, 4]),
-        # A turn that begins anew at once.
+        # An iteration that begins again at once.
         ([(1,), (1, 2), ()], [1]),
     ],
 )
@@ -63,7 +63,7 @@ def test_the_promise_reaches_the_compiler(monkeypatch):
         made(np.zeros(20), 5)
         code = entry_point(made, "vpi")._library.get_llvm_str()
         wide[made] = "x double>" in code
-    # Each turn takes up what the one before left: only a (false) promise makes vectors of it.
+    # Each iteration uses what the one before left: only a (false) promise makes vectors of it.
     assert wide == {doubled: False, promised: True}
 
 
