@@ -28,7 +28,7 @@ def test_white_noise():
 
 
 @pytest.mark.parametrize("rho", [0.7, -0.5])
-def test_coloured_noise_is_stationary(rho):
+def test_colored_noise_is_stationary(rho):
     values = sample(Noise(correlation=rho))
     for lag in (1, 2, 3):
         assert_allclose(correlation(values, lag), rho**lag, atol=0.02)
@@ -42,9 +42,9 @@ def test_heavy_tails():
     assert_allclose(values.var(), 1.0, atol=0.02)
     # of Student's t: 3 + 6/(ν - 4)
     assert_allclose(kurtosis(values), 4.0, atol=0.2)
-    coloured = sample(Noise(correlation=0.7, freedom=5))
-    assert_allclose(coloured.var(), 1.0, atol=0.03)
-    assert kurtosis(coloured) > 3.3
+    colored = sample(Noise(correlation=0.7, freedom=5))
+    assert_allclose(colored.var(), 1.0, atol=0.03)
+    assert kurtosis(colored) > 3.3
 
 
 def test_plots_with_the_same_noise_everywhere():

@@ -121,7 +121,7 @@ def test_sigma_from_the_plot():
     assert (true.sigma[1] == true.sigma[1, 0]).all()
 
 
-def test_coloured_noise_reaches_the_plots():
+def test_colored_noise_reaches_the_plots():
     truth = np.full((300, 2), [600.0, -50.0])
     z = ONE.measure(truth, streams(1, 50), noise=Noise(correlation=0.8)).z[..., 0] - 600.0
     assert_allclose((z[1:] * z[:-1]).mean() / (z**2).mean(), 0.8, atol=0.04)
