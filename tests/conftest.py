@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, settings
 # No test depends on time: a slow machine is no defect. `make test` tries the same examples in every
 # run; `make fuzz` draws new ones, and more of them.
 _UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.register_profile("repeatable", _UNTIMED, derandomize=True)
+settings.register_profile("repeatable", _UNTIMED, derandomize=True, max_examples=50)
 settings.register_profile("free", _UNTIMED, derandomize=False, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 
@@ -57,7 +57,10 @@ def pytest_runtest_protocol(item, nextitem):
         return (yield)
     _pause.start()
     try:
-        return (yield)
+        # Other processes that the test starts are traced if this variable says so.
+        with pytest.MonkeyPatch.context() as patch:
+            patch.delenv("COVERAGE_PROCESS_CONFIG", raising=False)
+            return (yield)
     finally:
         _pause.end()
 

@@ -22,6 +22,8 @@ from fuzzytrack.schedulers import (
 from fuzzytrack.testing import parametrize_with_checks
 from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch, trackers
 
+pytestmark = pytest.mark.untraced
+
 
 def fuzzy(name, method="exact", **settings):
     """A shipped rule base, maybe with other settings of its scheduler."""

@@ -83,12 +83,14 @@ def experiment(out, *before, home):
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="says where caches are by HOME")
 
 
+@pytest.mark.untraced
 @needs_posix
 def test_a_home_that_cannot_be_made(tmp_path):
     said = experiment(tmp_path / "out", home="/dev/null/home")
     assert said.count("warning: compiled code is not kept for other processes: /dev/null/") == 1
 
 
+@pytest.mark.untraced
 @needs_posix
 def test_a_user_who_can_write_nowhere_else():
     setpriv = shutil.which("setpriv")

@@ -73,6 +73,7 @@ def test_error_messages_stay_short():
     assert len(refusal(text.replace("u: S}", "u: q}")).message) < 400
 
 
+@pytest.mark.untraced
 def test_fuzzed_texts_load_or_are_refused():
     report = fuzz_rulebases.run(seed=1, start=0, count=1500)
     assert report.failures == []

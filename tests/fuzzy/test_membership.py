@@ -213,6 +213,7 @@ EXTREMES = {
 }
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("shape", SHAPES)
 def test_grades_at_extreme_corners(shape):
     points = np.array(sorted({*CORNERS, *(np.nextafter(x, 2.0 * x) for x in CORNERS), *CENTERS}))

@@ -163,6 +163,7 @@ def rulebases(draw):
     )
 
 
+@pytest.mark.untraced
 @settings(
     max_examples=120,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
@@ -267,6 +268,7 @@ def test_save_whole_or_not_at_all(tmp_path, monkeypatch):
 # ------------------------------------------------------------------ one cell
 
 
+@pytest.mark.untraced
 @given(st.data())
 @settings(max_examples=60)
 def test_exactly_one_cell_changes(data):

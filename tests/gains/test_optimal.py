@@ -89,6 +89,7 @@ def test_known_optima_with_gamma(velocity, acceleration, expected):
     assert optimal_alpha_beta_gamma(velocity, acceleration) == pytest.approx(expected, abs=6e-11)
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize(("rule", "cost"), CLOSED.values(), ids=CLOSED)
 @few
 @given(index=index_arrays)

@@ -12,6 +12,8 @@ from fuzzytrack.kernels.cache import VARIABLE, KernelFolder
 from fuzzytrack.kernels.compile import compiled, entry_point
 from fuzzytrack.kernels.rebuild import fingerprint
 
+pytestmark = pytest.mark.untraced
+
 
 def make(offset):
     def function(x):

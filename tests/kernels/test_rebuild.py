@@ -105,6 +105,7 @@ def test_what_cannot_be_told_has_none(value):
     assert fingerprint(make((value,))) is None
 
 
+@pytest.mark.untraced
 def test_every_scheduler_of_ours_can_be_told():
     for tracker in (
         ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)),

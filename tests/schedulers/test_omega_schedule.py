@@ -133,6 +133,7 @@ def root_mean_squares(tracker, seed=20, tracks=240):
     return np.array(found)
 
 
+@pytest.mark.untraced
 def test_it_beats_the_best_single_pair_of_gains(rules):
     fixed = root_mean_squares(ft.AlphaBetaTracker(ft.FixedGains(0.543, 0.548)))
     plain = root_mean_squares(ft.AlphaBetaTracker(ft.FuzzyScheduler(without_opening(rules))))

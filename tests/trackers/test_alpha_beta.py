@@ -371,6 +371,7 @@ def test_a_mask_is_a_missed_plot(compiled):
     assert np.isnan(tracker.start(np.ma.masked, 0.0).position)
 
 
+@pytest.mark.untraced
 def test_many_shapes_of_scans_do_not_pile_up():
     tracker = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.25))
     tracker.compile()

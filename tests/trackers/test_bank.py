@@ -155,6 +155,7 @@ def test_hindsight_goes_on_from_the_state_of_a_run():
     np.testing.assert_array_equal(rest.predicted, whole.predicted[40:])
 
 
+@pytest.mark.untraced
 def test_hindsight_compiled_is_the_same():
     times, truth = s3()
     z = WHITE_NOISE.measure(truth, streams(1, 3)).z
@@ -275,6 +276,7 @@ def errors_in_s3(bank, noise, native):
 
 
 # Tolerances: those of the paper's reading; the standard error of the mean is below 0.2 m.
+@pytest.mark.untraced
 @pytest.mark.parametrize(
     ("selection", "noise", "expected", "tolerance"),
     [

@@ -16,6 +16,8 @@ from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
 
+pytestmark = pytest.mark.untraced
+
 SINGLE = np.dtype(np.float32)
 SIGMA = 10.0
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))

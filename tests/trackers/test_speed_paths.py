@@ -20,6 +20,8 @@ from fuzzytrack.schedulers import KalmanCV
 from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
 
+pytestmark = pytest.mark.untraced
+
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
 FUZZY = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
 COUPLED = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("chan-style")))
