@@ -30,6 +30,7 @@ class Normalization(ABC):
     signals : tuple of str
         What the kernel returns, in order; a rule base takes its inputs from them, first to first.
     coupled, needs_sigma, sees_every_step : bool
+    variance_start : str or None
         As for a `fuzzytrack.schedulers.base.GainScheduler`.
 
     Notes
@@ -47,6 +48,7 @@ class Normalization(ABC):
     coupled: ClassVar[bool] = False
     needs_sigma: ClassVar[bool] = False
     sees_every_step: ClassVar[bool] = False
+    variance_start: ClassVar[str | None] = None
 
     @abstractmethod
     def kernel(self, n_axes: int) -> Normalize:

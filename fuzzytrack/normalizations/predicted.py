@@ -43,6 +43,7 @@ class Predicted(Normalization):
     )
     needs_sigma: ClassVar[bool] = True
     sees_every_step: ClassVar[bool] = True
+    variance_start: ClassVar[str | None] = "two-point"
 
     def initial_memory(self, n_axes: int) -> Memory:
         """No plot yet."""

@@ -42,6 +42,9 @@ class GainScheduler(ABC):
         `fuzzytrack.testing.check_scheduler` then does not check it.
     sigma_w : float or None
         Standard deviation of all plots (m), if the scheduler has one.
+    variance_start : str or None
+        Start of a track, ``two-point`` or ``one-point``, after which `prediction_variance` holds;
+        None for both. After another one, predictions have no variance.
     """
 
     source: ClassVar[str] = ""
@@ -51,6 +54,7 @@ class GainScheduler(ABC):
     uses_acceleration: bool = True
     may_be_unstable: bool = False
     sigma_w: float | None = None
+    variance_start: str | None = None
 
     @abstractmethod
     def kernel(self, n_axes: int) -> Kernel:

@@ -114,6 +114,11 @@ class FuzzyScheduler(GainScheduler):
         return self.opens or self.normalization.sees_every_step
 
     @property
+    def variance_start(self) -> str | None:  # type: ignore[override]
+        """Start after which the variance of a prediction holds; from the normalization."""
+        return self.normalization.variance_start
+
+    @property
     def uses_acceleration(self) -> bool:  # type: ignore[override]
         """Whether the rule base gives γ."""
         return "gamma" in self.outputs.gain_names

@@ -80,6 +80,11 @@ class KalmanCV(GainScheduler):
         """Whether plots need a standard deviation: unless `sigma_w` stands for all."""
         return self.sigma_w is None
 
+    @property
+    def variance_start(self) -> str | None:  # type: ignore[override]
+        """Start after which the covariance is that of the track: with `velocity_sigma`, one."""
+        return None if self.velocity_sigma is None else "one-point"
+
     def initial_memory(self, n_axes: int) -> Memory:
         """No plot yet."""
         return (NEW, 0.0, 0.0, 0.0, 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -105,4 +106,7 @@ class AlphaBetaTracker(LaneTracker):
 
     def prediction_variance(self, memory: Any, dt: Any) -> Any:
         """Variance of a predicted position; see `LaneTracker.prediction_variance`."""
+        if self.scheduler.variance_start not in (None, self.start_mode):
+            # The scheduler's covariance is that of a track which started otherwise.
+            return math.nan
         return self.scheduler.prediction_variance(memory, dt)

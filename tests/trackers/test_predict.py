@@ -145,6 +145,23 @@ def test_a_start_from_one_plot_knows_its_variance_if_it_presumes_a_velocity():
     assert math.isnan(unknown.predict(unknown.start(5.0, 0.0, 3.0), 4.0, 1.0).position_variance)
 
 
+@pytest.mark.parametrize(
+    ("scheduler", "start"),
+    [
+        (KalmanCV(1.0, velocity_sigma=2.0), "one-point"),
+        (KalmanCA(1.0, 3.0, velocity_sigma=2.0), "one-point"),
+        (FuzzyScheduler(loads_rulebase(PREDICTED % "")), "two-point"),
+    ],
+    ids=["kalman-cv", "kalman-ca", "predicted"],
+)
+def test_no_variance_after_a_start_that_the_covariance_is_not_for(scheduler, start):
+    t, z = [0.0, 1.0, 3.0, 3.5], [0.0, 2.0, 1.0, 5.0]
+    for mode in ("two-point", "one-point"):
+        tracker = AlphaBetaTracker(scheduler, mode)
+        found = tracker.predict(tracker.run(t, z, 1.0).state, 5.0, 1.0)
+        assert np.isfinite(found.position_variance) == (mode == start)
+
+
 @pytest.mark.parametrize("coupled", [False, True])
 def test_times_common_or_of_each_track(coupled):
     tracker = make_coupled() if coupled else CV
