@@ -91,7 +91,7 @@ def cold_start(scale: Scale) -> list[Row]:
             begin = time.perf_counter()
             first = float(_run("-c", code, cache=cache).stdout)
             without.append((first, time.perf_counter() - begin))
-            files = len(list(Path(cache).glob("kernel-*")))
+            files = len(list(Path(cache).glob("fuzzytrack-kernel-*")))
             if not files:
                 raise RuntimeError("nothing compiled was left on disk")
             for _ in range(scale.processes):

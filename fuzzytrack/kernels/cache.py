@@ -6,6 +6,7 @@ It handles files only; `fuzzytrack.kernels.llvm` chooses their names and content
 from __future__ import annotations
 
 import os
+import re
 import stat
 import tempfile
 import time
@@ -26,12 +27,13 @@ VARIABLE = "FUZZYTRACK_CACHE_DIR"
 MOST_FILES = 500
 MOST_BYTES = 100_000_000
 
-# Every file of ours begins so; nothing else in the folder is ever touched.
-_PREFIX = "kernel-"
+_PREFIX = "fuzzytrack-kernel-"
 #: Raise it when files of older versions can no longer be read; they are removed then.
 _FORMAT = 1
 _SUFFIX = f".{_FORMAT}"
 _DRAFT = ".draft"
+# Names of our files, those of other formats included; nothing else in the folder is ever touched.
+_OURS = re.compile(rf"{_PREFIX}\w+(?:\.\d+|{re.escape(_DRAFT)})")
 #: Age (s) from which the draft of a file is taken for that of a process that was killed.
 _DRAFT_IS_LEFT = 3600.0
 
@@ -179,7 +181,8 @@ class KernelFolder:
             for file in self.path.glob(f"{_PREFIX}*"):
                 # Another process may just have removed it.
                 with suppress(OSError):
-                    found.append((file, file.stat()))
+                    if _OURS.fullmatch(file.name):
+                        found.append((file, file.stat()))
         return sorted(found, key=lambda pair: pair[1].st_mtime, reverse=True)
 
 

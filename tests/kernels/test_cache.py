@@ -106,18 +106,32 @@ def test_the_size_is_bounded(folder, monkeypatch):
 
 def test_leftovers_are_removed(folder):
     folder.write("a", b"code")
-    for name, age in (("kernel-1.draft", 4000), ("kernel-2.draft", 1000), ("kernel-a.nbc", 0)):
-        path = folder.path / name
+    for name, age in (("1.draft", 4000), ("2.draft", 1000), ("a.0", 0)):
+        path = folder.path / f"fuzzytrack-kernel-{name}"
         path.write_bytes(b"rest")
         os.utime(path, (0, path.stat().st_mtime - age))
     (folder.path / "letter.txt").write_text("not ours")
     folder.write("b", b"code")
     names = {path.name for path in folder.path.iterdir()} - {f.name for f, _ in folder.files()}
-    assert names == {"kernel-2.draft", "letter.txt"}
+    assert names == {"fuzzytrack-kernel-2.draft", "letter.txt"}
     assert len(folder.files()) == 2
     assert folder.clear() == (3, 12)
     assert [path.name for path in folder.path.iterdir()] == ["letter.txt"]
     assert folder.clear() == (0, 0)
+
+
+@pytest.mark.parametrize(
+    "name", ["kernel-6.1", "kernel-notes.txt", "fuzzytrack-kernel-notes.txt", "fuzzytrack-kernel-"]
+)
+def test_files_of_others_are_never_removed(folder, name):
+    folder.path.mkdir(mode=0o700, parents=True)
+    for other in (name, f"{name}.draft.txt"):
+        (folder.path / other).write_text("mine")
+        os.utime(folder.path / other, (0, 0))
+    folder.write("a", b"code")
+    assert len(folder.files()) == 1
+    assert folder.clear() == (1, 4)
+    assert sorted(file.name for file in folder.path.iterdir()) == [name, f"{name}.draft.txt"]
 
 
 def test_a_full_disk_leaves_no_draft(folder, monkeypatch):
