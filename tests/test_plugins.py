@@ -95,6 +95,19 @@ def test_a_broken_plugin_is_named_and_skipped(installed, module, text, reason):
         things.get("bad")
 
 
+def test_a_name_is_one_that_users_can_write():
+    things = Registry("thing", "test.group", dict)
+    for name in ("", "a b", "a:b", "a\nb"):
+        with pytest.raises(ValueError, match=r"^name: needs letters, digits, .* only; got '"):
+            things.register(name)
+    for name in (3, None, dict):
+        with pytest.raises(
+            TypeError, match=r"^name: needs a text, got .*; write .* register\(name\)"
+        ):
+            things.register(name)
+    assert list(things) == []
+
+
 def test_an_interruption_is_no_fault_of_a_plugin(installed, module):
     installed(bad=module("interrupted_plugin", "raise KeyboardInterrupt") + ":thing")
     with pytest.raises(KeyboardInterrupt):

@@ -30,7 +30,7 @@ from fuzzytrack.kernels.cache import KernelFolder
 __all__ = ["c_function", "call", "keep_on_disk", "pointer", "word_for_compiler"]
 
 #: Part of what code is kept by. Raise it when this room compiles the same function differently.
-_SCHEME = 5
+_SCHEME = 6
 _MADE_BY = (_SCHEME, sys.implementation.cache_tag, numba.__version__, llvmlite.__version__)
 
 #: Vectors that the compiler works on in each iteration of a loop.
@@ -53,12 +53,14 @@ class _ByContent(NullCache):
     def load_overload(self, signature: Any, target_context: Any) -> Any:
         """Compiled code for a signature, or None."""
         target_context.refresh()
-        content = KernelFolder.of_user().read(self._name(signature, target_context.codegen()))
-        if content is None:
+        name = self._name(signature, target_context.codegen())
+        content = KernelFolder.of_user().read(name)
+        # A damaged file is replaced by what is compiled now: its code could end the process.
+        if content is None or content[:_CHECKED] != _checksum(name, content[_CHECKED:]):
             return None
         try:
-            return CompileResult._rebuild(target_context, *pickle.loads(content))
-        # A damaged file; it is replaced by what is compiled now.
+            return CompileResult._rebuild(target_context, *pickle.loads(content[_CHECKED:]))
+        # Another version of something that the code needs.
         except Exception:
             return None
 
@@ -66,12 +68,21 @@ class _ByContent(NullCache):
         """Keep compiled code for a signature."""
         if not result.lifted and not result.library.has_dynamic_globals:
             name = self._name(signature, result.codegen)
-            KernelFolder.of_user().write(name, dumps(result._reduce()))
+            code = dumps(result._reduce())
+            KernelFolder.of_user().write(name, _checksum(name, code) + code)
 
     def _name(self, signature: Any, codegen: Any) -> str:
         # The last part is the processor with its features.
         key = (_MADE_BY, self._digest, str(signature), codegen.magic_tuple())
         return hashlib.sha256(repr(key).encode()).hexdigest()[:32]
+
+
+#: Bytes of the checksum before the code in a file.
+_CHECKED = 32
+
+
+def _checksum(name: str, code: bytes) -> bytes:
+    return hashlib.sha256(name.encode() + code).digest()
 
 
 def keep_on_disk(compiled: Any, digest: str | None) -> None:

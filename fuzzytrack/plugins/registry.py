@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -13,6 +14,9 @@ from typing import Any, Generic, TypeVar
 from fuzzytrack.errors import PluginWarning
 
 __all__ = ["Plugin", "Registry"]
+
+# Colons separate a name from the parameters after it.
+_NAME = re.compile(r"[\w.-]+")
 
 T = TypeVar("T", bound=Callable[..., Any])
 
@@ -88,12 +92,18 @@ class Registry(Generic[T]):
         Raises
         ------
         TypeError
-            If the factory makes nothing of this kind.
+            If the factory makes nothing of this kind, or the name is no text.
         ValueError
-            If the name is taken by another factory. A class of the same module and name, defined
-            again, takes the place of the earlier one; so does one of another script, with a
-            `PluginWarning`.
+            If the name has characters that a name cannot have, or is taken by another factory. A
+            class of the same module and name, defined again, takes the place of the earlier one; so
+            does one of another script, with a `PluginWarning`.
         """
+        if not isinstance(name, str):
+            raise TypeError(
+                f"name: needs a text, got {name!r}; write the decorator as register(name)"
+            )
+        if not _NAME.fullmatch(name):
+            raise ValueError(f"name: needs letters, digits, '_', '-' and '.' only; got {name!r}")
 
         def decorate(factory: T) -> T:
             self._check(name, factory)

@@ -49,9 +49,32 @@ def test_code_is_kept_once_a_content(folder):
 def test_damaged_files_are_replaced(folder):
     compiled(make(1.0))(3.0)
     ((file, _),) = folder.files()
-    file.write_bytes(file.read_bytes()[:1000])
-    assert compiled(make(1.0))(3.0) == 7.0
-    assert len(file.read_bytes()) > 1000
+    whole = file.read_bytes()
+    middle = len(whole) // 2
+    for damaged in (b"", whole[:1000], whole[:middle] + b"fuzzy" + whole[middle + 5 :]):
+        file.write_bytes(damaged)
+        assert compiled(make(1.0))(3.0) == 7.0
+        assert len(file.read_bytes()) > 1000
+
+
+def test_files_under_another_name_are_replaced(folder):
+    for offset in (1.0, 2.0):
+        compiled(make(offset))(3.0)
+    (one, _), (other, _) = folder.files()
+    one.write_bytes(other.read_bytes())
+    for offset in (1.0, 2.0):
+        assert compiled(make(offset))(3.0) == 6.0 + offset
+    assert one.read_bytes() != other.read_bytes()
+
+
+def test_code_that_needs_what_is_no_longer_there_is_replaced(folder, monkeypatch):
+    compiled(make(1.0))(3.0)
+    ((file, _),) = folder.files()
+    whole = file.read_bytes()
+    with monkeypatch.context() as change:
+        change.setattr("pickle.loads", lambda code: [])
+        assert compiled(make(1.0))(3.0) == 7.0
+    assert len(file.read_bytes()) == len(whole)
 
 
 def test_names_of_compiled_functions_follow_their_content():
