@@ -307,8 +307,10 @@ class FuzzySet:
         grades = np.where((points >= start) & (points <= end), 1.0, 0.0)
         if self.shape != "singleton":
             curve = self._from_scikit_fuzzy(points.ravel()).reshape(points.shape)
-            # Between neighboring floats scikit-fuzzy's halves of a curve overlap.
-            grades = np.where(grades == 1.0, 1.0, np.clip(curve, 0.0, 1.0))
+            if self.shape in ("smf", "zmf", "pimf"):
+                # Between neighboring floats the halves of scikit-fuzzy's curves overlap.
+                curve = np.clip(curve, 0.0, 1.0)
+            grades = np.where(grades == 1.0, 1.0, curve)
         return np.where(np.isnan(points), np.nan, grades)
 
     def _from_scikit_fuzzy(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
