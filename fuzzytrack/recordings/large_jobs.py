@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, check_output_folder
 from fuzzytrack.io.formats import check_table
-from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
+from fuzzytrack.io.recording import ROWS, Piece, find_columns, read_pieces, recording_files
 from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
@@ -111,12 +111,14 @@ class LargeJob:
         if output is not None:
             check_table(output, self.files)
         pieces = read_pieces(self.files, self.columns, rows=self.rows, progress=progress)
-        totals = track_pieces(
-            self.tracker, self.sigma, pieces, self.columns, output, inputs=self.files
+        return track_pieces(
+            self.tracker,
+            self.sigma,
+            _with_rows(pieces, self.files[0]),
+            self.columns,
+            output,
+            inputs=self.files,
         )
-        if not totals.tracks:
-            raise no_rows(self.files[0])
-        return totals
 
     def track_apart(
         self,
@@ -161,3 +163,13 @@ class LargeJob:
                 executor=executor,
                 progress=progress,
             )
+
+
+def _with_rows(pieces: Iterable[Piece], file: str) -> Iterator[Piece]:
+    """The pieces; DataError at their end if there was no row, so that nothing is written."""
+    rows = 0
+    for piece in pieces:
+        rows += len(piece.time)
+        yield piece
+    if not rows:
+        raise no_rows(file)

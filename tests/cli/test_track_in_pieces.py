@@ -139,8 +139,10 @@ def test_no_rows(fails, tmp_path):
     pq.write_table(
         pa.table({"t": pa.array([], pa.float64()), "x": pa.array([], pa.float64())}), path
     )
-    for words in ([], ["--jobs", "2", "-o", tmp_path / "o", "--partitions", "1"]):
+    out = tmp_path / "o.csv"
+    for words in ([], ["-o", out], ["--jobs", "2", "-o", tmp_path / "o", "--partitions", "1"]):
         assert "holds no rows" in fails("track", path, "--chunk-rows", 5, *words)
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_tracker_without_states(fails, folder, monkeypatch):
