@@ -12,6 +12,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from fuzzytrack.errors import CacheWarning, FileError, NoRuleFiresWarning, PluginWarning
+from fuzzytrack.plugins.scripts import place_in_script
 
 __all__ = ["Command", "Commands", "one_line"]
 
@@ -46,13 +47,11 @@ class Commands(TyperGroup):
                 warnings.simplefilter("always", category)
             try:
                 status = super().main(*args, **extra)
-            except (OSError, ValueError) as error:
-                sys.exit(_complain(one_line(error), 2))
-            # Wrong usage; the module of its class depends on the version of typer.
             except Exception as error:
-                if not hasattr(error, "format_message"):
+                line = _line(error)
+                if line is None:
                     raise
-                sys.exit(_complain(_usage(error), 2))
+                sys.exit(_complain(line, 2))
         sys.exit(status if isinstance(status, int) else 0)
 
     def invoke(self, ctx: Any) -> Any:
@@ -75,6 +74,17 @@ def _with_options(message: str, parameters: Iterable[Any]) -> str:
         return " and ".join(options.get(name, name) for name in names)
 
     return _ARGUMENTS.sub(written, message)
+
+
+def _line(error: Exception) -> str | None:
+    """Error as one line; None if it is a mistake in this package, which needs the traceback."""
+    place = place_in_script(error)
+    if place is not None:
+        return _printable(f"{place}: {type(error).__name__}: {error}")
+    if isinstance(error, OSError | ValueError):
+        return one_line(error)
+    # Wrong usage; the module of its class depends on the version of typer.
+    return _usage(error) if hasattr(error, "format_message") else None
 
 
 def one_line(error: Exception) -> str:

@@ -10,14 +10,14 @@ import hashlib
 import os
 import sys
 import traceback
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
 from fuzzytrack.errors import Location, PluginError
 
-__all__ = ["Script", "load_script", "load_scripts", "loaded_scripts"]
+__all__ = ["Script", "load_script", "load_scripts", "loaded_scripts", "place_in_script"]
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,11 @@ def loaded_scripts() -> tuple[Script, ...]:
     return tuple(_loaded.values())
 
 
+def place_in_script(error: BaseException) -> Location | None:
+    """Place in a loaded script from which an error comes; None if it comes from elsewhere."""
+    return _last_place([script.path for script in _loaded.values()], error)
+
+
 def _run(script: Script) -> None:
     module = ModuleType(script.module)
     module.__file__ = script.path
@@ -109,7 +114,12 @@ def _place(path: str, error: BaseException) -> Location:
     """Place in a script where an error comes from."""
     if isinstance(error, SyntaxError) and error.filename == path:
         return Location(path, error.lineno or 1, error.offset or 1)
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == path]
+    return _last_place([path], error) or Location(path, 1, 1)
+
+
+def _last_place(paths: Collection[str], error: BaseException) -> Location | None:
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename in paths]
     if not frames:
-        return Location(path, 1, 1)
-    return Location(path, frames[-1].lineno or 1, (frames[-1].colno or 0) + 1)
+        return None
+    last = frames[-1]
+    return Location(last.filename, last.lineno or 1, (last.colno or 0) + 1)

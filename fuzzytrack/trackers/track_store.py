@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,8 +37,10 @@ class TrackStore:
 
     Raises
     ------
+    TypeError
+        If `n_axes` is no whole number, or `tracker` is no tracker.
     ValueError
-        If there is no axis.
+        If there is no axis, or the text names no tracker.
 
     Notes
     -----
@@ -62,6 +65,10 @@ class TrackStore:
 
     def __init__(self, tracker: Tracker | str, n_axes: int) -> None:
         tracker = as_tracker(tracker)
+        if isinstance(tracker, type) or not isinstance(tracker, Tracker):
+            raise TypeError(f"tracker: needs a tracker, or a text that names one; got {tracker!r}")
+        if operator.index(n_axes) < 1:
+            raise ValueError(f"n_axes must be at least 1, got {n_axes}")
         self.tracker, self.n_axes = tracker, n_axes
         # Without a plot, so the standard deviation is of no meaning.
         nobody = tracker.start(np.empty((0, n_axes)), 0.0, 1.0)
@@ -119,9 +126,13 @@ class TrackStore:
 
         Raises
         ------
+        TypeError
+            If `state` is something else.
         ValueError
             If the state has another shape, or comes from another kind of tracker.
         """
+        if not isinstance(state, TrackState):
+            raise TypeError(f"state must be a TrackState, got {type(state).__name__}")
         count = math.prod(state.shape[:-1])
         self._check_state(state, count)
         reused = [self._free.pop() for _ in range(min(count, len(self._free)))]

@@ -159,3 +159,29 @@ def test_a_mistake_in_a_script_is_one_line(fails, csv, words):
 def test_a_script_that_is_not_there(fails, plots, tmp_path):
     path = tmp_path / "none.py"
     assert fails("track", plots, "--plugin", path) == f"error: {path}: No such file or directory"
+
+
+@pytest.mark.parametrize(
+    ("made", "place", "message"),
+    [
+        ("1 / 0", "5:15", "ZeroDivisionError: division by zero"),
+        ("[][0]", "5:15", "IndexError: list index out of range"),
+        ("int('a')", None, "tracker 'failing': invalid literal for int() with base 10: 'a'"),
+    ],
+)
+def test_a_mistake_while_a_plugin_of_a_script_is_used_is_one_line(
+    fails, csv, plots, monkeypatch, made, place, message
+):
+    monkeypatch.setattr(scripts, "_loaded", {})
+    path = csv(
+        "from fuzzytrack.schedulers import schedulers\n\n"
+        "@schedulers.register('failing')\n"
+        "def failing():\n"
+        f"    return    {made}\n",
+        "mine.py",
+    )
+    try:
+        line = fails("track", plots, "--plugin", path, "--tracker", "failing")
+    finally:
+        schedulers.unregister("failing")
+    assert line == (f"{path}:{place}: {message}" if place else f"error: {message}")

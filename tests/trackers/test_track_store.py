@@ -228,5 +228,17 @@ def test_states_that_do_not_fit():
     slots = started(store, [[1.0, 2.0], [3.0, 4.0]])
     with pytest.raises(ValueError, match="2 tracks of 2 axes have"):
         store.scatter(slots, FIXED.start([[1.0, 2.0]], 0.0))
-    with pytest.raises(ValueError, match="at least one axis"):
-        TrackStore(FIXED, 0)
+    with pytest.raises(TypeError, match="state must be a TrackState, got TrackResult"):
+        store.add(FIXED.run([0.0], [[[1.0, 2.0]]]))
+
+
+def test_what_a_store_is_made_of():
+    scheduler = FixedGains(0.5, 0.2)
+    for tracker in (None, 3, scheduler, AlphaBetaTracker):
+        with pytest.raises(TypeError, match="tracker: needs a tracker, or a text that names one"):
+            TrackStore(tracker, 1)
+    for n_axes in (0, -1):
+        with pytest.raises(ValueError, match=f"n_axes must be at least 1, got {n_axes}"):
+            TrackStore(AlphaBetaTracker(scheduler), n_axes)
+    with pytest.raises(TypeError, match="integer"):
+        TrackStore(AlphaBetaTracker(scheduler), 1.5)
