@@ -96,6 +96,9 @@ def test_a_scheduler_is_a_value(scheduler, promise):
     [
         (forgets_one, (0.0,), "memory must keep its length 1, got 0"),
         (four_answers, (), "must return alpha, beta, gamma, phi, memory"),
+        (lambda *words: None, (), "must return alpha, beta, gamma, phi, memory"),
+        (lambda *words: [0.5, 0.2, 0.0, 1.0, ()], (), "must return alpha, beta, gamma, phi"),
+        (lambda *words: (0.5, 0.2, 0.0, 1.0, []), (), "and the memory as a tuple"),
         (grows_to_infinity, (), "gains and memory must be finite floats"),
         (gambles, (), "must depend on nothing else"),
         (divides, (), r"innovation 0, change 0: raises ZeroDivisionError .* guard its own divis"),
@@ -138,6 +141,12 @@ def test_a_kernel_has_five_arguments():
         run_check("kernel-takes-five-arguments", scheduler_of(of_three))
     with pytest.raises(AssertionError, match="must return a plain function, got a method: define"):
         run_check("kernel-takes-five-arguments", WithMethod())
+
+    def of_one_more(innovation, change, dt, sigma, memory, *, alpha=0.5):
+        return alpha, 0.2, 0.0, 1.0, memory
+
+    with pytest.raises(AssertionError, match=r"the five arguments .*, takes .* \*, alpha=0.5\)$"):
+        run_check("kernel-takes-five-arguments", scheduler_of(of_one_more))
 
 
 LIMIT = 2.0
@@ -296,6 +305,15 @@ def test_gains_that_become_unstable_later():
 
     with pytest.raises(AssertionError, match="make a filter unstable"):
         run_check("gains-are-stable", scheduler_of(wanders, (0.0,)))
+
+
+@pytest.mark.parametrize("direction", [-1.0, 1.0])
+def test_gains_are_stable_for_large_innovations_in_both_directions(direction):
+    def jumps(innovation, change, dt, sigma, memory):
+        return 1.9 if direction * innovation > 1e6 else 0.5, 0.3, 0.0, 1.0, memory
+
+    with pytest.raises(AssertionError, match=r"innovation -?1e[+]09, .* make a filter unstable"):
+        run_check("gains-are-stable", scheduler_of(jumps))
 
 
 def test_steps_of_a_start_need_no_gains():

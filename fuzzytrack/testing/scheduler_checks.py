@@ -24,8 +24,8 @@ from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 __all__ = ["SCHEDULER_CHECKS"]
 
 _ARGUMENTS = ("innovation", "change", "dt", "sigma", "memory")
-#: Innovations and changes of observation (m): none, tiny, ordinary and absurd.
-_MAGNITUDES = (0.0, 1e-12, 1.0, -3.0, 50.0, -1e9)
+#: Innovations and changes of observation (m): none, tiny, ordinary and, in both directions, absurd.
+_MAGNITUDES = (0.0, 1e-12, 1.0, -3.0, 50.0, -1e9, 1e9)
 _DT = 0.5
 
 
@@ -37,13 +37,15 @@ def kernel_takes_five_arguments(scheduler: GainScheduler, seed: int) -> None:
         f"kernel(n_axes) must return a plain function, got a {type(kernel).__name__}: define it "
         "inside, and take what it needs of self into variables before",
     )
+    signature = inspect.signature(kernel)
+    needed = f"the kernel must take the five arguments ({', '.join(_ARGUMENTS)}), takes {signature}"
     try:
-        inspect.signature(kernel).bind(*_ARGUMENTS)
+        signature.bind(*_ARGUMENTS)
     except TypeError:
-        raise AssertionError(
-            f"the kernel must take the five arguments ({', '.join(_ARGUMENTS)}), takes "
-            f"{inspect.signature(kernel)}"
-        ) from None
+        raise AssertionError(needed) from None
+    # Not even with a default: a function that has one cannot be compiled.
+    named = [p for p in signature.parameters.values() if p.kind is p.KEYWORD_ONLY]
+    expect(not named, needed)
 
 
 def kernel_uses_numbers_only(scheduler: GainScheduler, seed: int) -> None:
@@ -57,7 +59,10 @@ def kernel_answers_in_form(scheduler: GainScheduler, seed: int) -> None:
     kernel, memory = _kernel(scheduler), tuple(scheduler.initial_memory(_axes(scheduler)))
     for where, arguments in _sample_arguments(scheduler):
         answer = _answer(kernel, where, arguments, memory)
-        expect(len(answer) == 5, f"{where}: must return alpha, beta, gamma, phi, memory")
+        expect(
+            isinstance(answer, tuple) and len(answer) == 5 and isinstance(answer[4], tuple),
+            f"{where}: must return alpha, beta, gamma, phi, memory, and the memory as a tuple",
+        )
         numbers = (*answer[:4], *answer[4])
         expect(
             all(isinstance(n, float) and math.isfinite(n) for n in numbers),
