@@ -50,7 +50,10 @@ class CompiledStep:
         if type(z) is not np.ndarray:
             if isinstance(z, np.ma.MaskedArray):
                 return None
-            z = np.array(z, dtype=_FLOAT)
+            z = np.array(z)
+            # Only these: of dates, for example, NumPy would make numbers, too.
+            if z.dtype.kind == "i":
+                z = z.astype(_FLOAT)
         if sigma is None:
             if self._needs_sigma:
                 return None

@@ -371,6 +371,31 @@ def test_a_mask_is_a_missed_plot(compiled):
     assert np.isnan(tracker.start(np.ma.masked, 0.0).position)
 
 
+@pytest.mark.parametrize("compiled", [False, True])
+@pytest.mark.parametrize(
+    "plot", [np.datetime64("2020-01-01"), np.timedelta64(5, "s"), np.complex128(1.0), 1j]
+)
+def test_plots_that_are_no_numbers(compiled, plot):
+    # Equal trackers share compiled code.
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(0.55 if compiled else 0.54, 0.25))
+    if compiled:
+        tracker.compile()
+    for z, start in (plot, 0.0), ([plot, plot], [0.0, 0.0]):
+        with pytest.raises(ValueError, match="z: needs real numbers, got "):
+            tracker.step(tracker.start(start, 0.0), z, 1.0)
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_whole_numbers_are_plots(compiled):
+    # Equal trackers share compiled code.
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(0.55 if compiled else 0.54, 0.25))
+    if compiled:
+        tracker.compile()
+    state = tracker.run([0, 1], [[0, 4], [2, 3]]).state
+    whole, same = tracker.step(state, [5, 7], 3), tracker.step(state, [5.0, 7.0], 3.0)
+    np.testing.assert_array_equal(whole.lanes, same.lanes)
+
+
 @pytest.mark.untraced
 def test_many_shapes_of_scans_do_not_pile_up():
     tracker = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.25))
