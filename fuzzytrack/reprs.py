@@ -1,4 +1,4 @@
-"""Constructor code: what `repr` gives of schedulers, trackers, normalizations and fuzzy systems."""
+"""What `repr` gives: constructor code, or of values that hold arrays a summary in one line."""
 
 from __future__ import annotations
 
@@ -6,7 +6,13 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["call", "constructor_code", "shown"]
+import numpy as np
+
+__all__ = ["call", "constructor_code", "shown", "summary"]
+
+# Entries of a sequence, and characters of a fact, that a summary shows.
+_ENTRIES = 4
+_CHARACTERS = 72
 
 
 def constructor_code(value: object, **renamed: str) -> str:
@@ -50,6 +56,37 @@ def shown(value: object) -> str:
         return repr(value)
     text = repr(str(value))
     return f'"{text[1:-1]}"' if text[0] == "'" and '"' not in text else text
+
+
+def summary(value: object, *names: str, **facts: object) -> str:
+    """A value that holds arrays in one line, in angle brackets: it is no code.
+
+    Parameters
+    ----------
+    value : object
+    *names : str
+        Its attributes to show; of an array the shape, of a mapping the keys, and the beginning of
+        what is long.
+    **facts : object
+        Further facts, by name.
+    """
+    found = {**{name: getattr(value, name) for name in names}, **facts}
+    shown_facts = ", ".join(_fact(name, fact) for name, fact in found.items())
+    return f"<{type(value).__name__}: {shown_facts}>"
+
+
+def _fact(name: str, fact: object) -> str:
+    if isinstance(fact, np.ndarray) and fact.ndim:
+        return f"{name}.shape={fact.shape}"
+    if isinstance(fact, float | np.floating | np.ndarray):
+        return f"{name}={fact:.6g}"
+    if isinstance(fact, Mapping):
+        fact = tuple(fact)
+    if isinstance(fact, tuple) and len(fact) > _ENTRIES:
+        text = f"({', '.join(map(shown, fact[:_ENTRIES]))}, … {len(fact)} in all)"
+    else:
+        text = shown(fact)
+    return f"{name}={text if len(text) <= _CHARACTERS else text[: _CHARACTERS - 1] + '…'}"
 
 
 def _has_own_constructor(kind: type) -> bool:

@@ -11,7 +11,16 @@ from typing import Any
 
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["Readers", "call_with", "check_options", "is_file", "parameters_of", "spelled", "split"]
+__all__ = [
+    "Readers",
+    "call_with",
+    "check_options",
+    "is_file",
+    "kind_of",
+    "parameters_of",
+    "spelled",
+    "split",
+]
 
 #: For types of parameters other than words and numbers, the functions that make them from a word.
 Readers = Mapping[Any, Callable[[str], Any]]
@@ -117,6 +126,11 @@ def call_with(
             f"parameters: {', '.join(spelled(parameters))}"
         )
     return factory(**arguments)
+
+
+def kind_of(value: object) -> str:
+    """What a wrong argument is, for messages: its type, or that it is a class."""
+    return f"the class {value.__name__}" if isinstance(value, type) else type(value).__name__
 
 
 def _value(key: str, text: str, annotation: Any, readers: Readers) -> Any:

@@ -79,7 +79,7 @@ class Unequal(GainScheduler):
 @pytest.mark.parametrize(
     ("scheduler", "promise"),
     [
-        (0.5, "must be a GainScheduler, got a float"),
+        (0.5, "must be a GainScheduler, got float"),
         (ft.FixedGains, r"got the class FixedGains; give an object, as FixedGains\(\) makes it"),
         (Unhashable(), "^hashable: Unhashable must be hashable: make it a frozen dataclass"),
         (Unequal(), "^equals-pickled-copy: Unequal must equal its pickled copy"),
@@ -139,7 +139,7 @@ def test_a_kernel_has_five_arguments():
     )
     with pytest.raises(AssertionError, match=expected):
         run_check("kernel-takes-five-arguments", scheduler_of(of_three))
-    with pytest.raises(AssertionError, match="must return a plain function, got a method: define"):
+    with pytest.raises(AssertionError, match="must return a plain function, got method: define"):
         run_check("kernel-takes-five-arguments", WithMethod())
 
     def of_one_more(innovation, change, dt, sigma, memory, *, alpha=0.5):
@@ -501,9 +501,7 @@ def test_a_variance_must_be_that_of_the_covariance():
 
 
 def test_a_tracker_has_four_verbs():
-    with pytest.raises(
-        AssertionError, match="must have run, start, step and predict, got a FixedG"
-    ):
+    with pytest.raises(AssertionError, match="must have run, start, step and predict, got FixedG"):
         check_tracker(ft.FixedGains(0.5, 0.2))
     with pytest.raises(AssertionError, match="got the class Faulty; give an object"):
         list(checks_for(Faulty))

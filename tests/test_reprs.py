@@ -3,13 +3,27 @@
 import pickle
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 
+import numpy as np
 import pytest
+from matplotlib import pyplot as plt
 
 import fuzzytrack as ft
 from fuzzytrack import normalizations, schedulers, trackers
+from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.saving import save_rulebase
+from fuzzytrack.gains.cost import TrackingCost
+from fuzzytrack.io.recording import Piece, Recording, Track
 from fuzzytrack.normalizations import Scale, Smoothed, SmoothedMagnitude
+from fuzzytrack.papers.llinas.columns import columns
+from fuzzytrack.papers.llinas.programs import Run
+from fuzzytrack.papers.llinas.sampling import ReportTracks
+from fuzzytrack.papers.reproduction import Reproduction
+from fuzzytrack.plugins.scripts import Script
+from fuzzytrack.recordings.ragged import batches
+from fuzzytrack.recordings.streaming import run_iter
+from fuzzytrack.reprs import summary
 from fuzzytrack.schedulers import (
     FadingMemory,
     GrowingMemory,
@@ -19,7 +33,18 @@ from fuzzytrack.schedulers import (
     LinearCombination,
     QualityGains,
 )
+from fuzzytrack.schedulers.reachable_gains import certify, reachable_gains
+from fuzzytrack.schedulers.review import review
+from fuzzytrack.simulation.published import track_set
+from fuzzytrack.simulation.scenario_files import load_scenario
+from fuzzytrack.simulation.sensor_field import canonical_field
+from fuzzytrack.testbed.comparison import compare
+from fuzzytrack.testbed.metrics import PairedDifference
+from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch
+from fuzzytrack.trackers.covariance import track_covariance
+from fuzzytrack.trackers.track_store import TrackStore
+from fuzzytrack.tuning.ranking import Ranked
 
 NAMES = {
     name: getattr(module, name)
@@ -140,3 +165,100 @@ def test_rules_by_name_or_path(tmp_path):
         ft.FuzzyScheduler("chan-stile")
     with pytest.raises(TypeError, match=r"rules must be a RuleBase, the name .* got int"):
         ft.FuzzyScheduler(5)
+
+
+@pytest.mark.parametrize("draw", [ft.plot_memberships, ft.plot_gain_surfaces, ft.plot_surface])
+def test_rules_by_name_in_functions(draw):
+    _, axes = draw("omega-schedule")
+    assert len(axes) == len(draw(ft.load_rulebase("omega-schedule"))[1])
+    plt.close("all")
+    with pytest.raises(TypeError, match=r"rules must be a RuleBase, the name .* got int"):
+        draw(5)
+
+
+def test_rules_by_name_in_the_theory(tmp_path):
+    rules = ft.load_rulebase("chan-style")
+    save_rulebase(rules, tmp_path / "mine.yaml")
+    assert ft.FuzzySystem("chan-style").rules == rules
+    assert ft.FuzzySystem(tmp_path / "mine.yaml", "table").rules == rules
+    assert certify("chan-style").rate == certify(rules).rate
+    assert (reachable_gains("chan-style") == reachable_gains(rules)).all()
+    gains = ft.Gains(*np.array([[0.5, 0.6], [0.2, 0.1], [0.0, 0.0]]))
+    _, plane = ft.plot_gain_plane(gains, "chan-style")
+    assert "limits of chan-style" in plane.get_legend_handles_labels()[1]
+    plt.close("all")
+    with pytest.raises(TypeError, match=r"gains must be pairs \(alpha, beta\), .* got FixedGains"):
+        certify(ft.FixedGains(0.5, 0.2))
+    with pytest.raises(TypeError, match=r"rules must be a RuleBase, .* got FixedGains"):
+        ft.FuzzySystem(ft.FixedGains(0.5, 0.2))
+    with pytest.raises(ft.RuleBaseError, match="did you mean 'chan-style'"):
+        certify("chan-stile")
+
+
+# ------------------------------------------------------------------ values that hold arrays
+
+
+def values():
+    """One of each class of values with arrays, and of others whose fields are long."""
+    rules = ft.load_rulebase("stiffness-damping")
+    tracker = ft.AlphaBetaTracker(KalmanCV(0.5))
+    times = np.arange(6.0)
+    plots = times[:, None, None] * [[3.0, -1.0], [2.0, 0.5], [1.0, 7.0]]
+    result = tracker.run(times, plots, 1.5)
+    scenario = load_scenario("constant-velocity")
+    results = monte_carlo(scenario, ["chan-style", "kalman-cv:sigma_v=0.5"], runs=3, seed=1)
+    piece = Piece.of(["a"] * 6, times, plots[:, 0])
+    system = ft.FuzzySystem(rules, "table", table_nodes=5)
+    store = TrackStore(tracker, 2)
+    store.add(tracker.start(plots[0], 0.0, 1.5))
+    yield from (result, result.gains, result.state, tracker.predict(result.state, 9.0), store)
+    yield from (scenario, scenario.sensors, results, results.sample)
+    yield from (piece, piece.ids, *run_iter("chan-style", [piece]), *batches([times, times[:4]]))
+    yield from (Track("a", times, plots[:, 0]), Recording("a.csv", "t", "id", ("x", "y"), ()))
+    yield from (certify(rules), certify("stiffness-damping-wide"), review(rules))
+    yield from (rules.inputs[0], *rules.rules, system.surface("damping", 5), SHAPES["trapmf"])
+    yield from (track_covariance(result, 1.5, 0.5), tracker.program(2), columns(rules))
+    yield from (canonical_field(1500.0), track_set("mixed", 3, 1), ReportTracks.of(4.0, 60.0, 2))
+    yield from (Run(plots[:, 0], times), Script("a.py", b"x = 1\n" * 90))
+    yield TrackingCost(sigma=10.0, dt=2.0, velocity=3.0)
+    yield Reproduction("llinas", "Llinas et al. (1998)", ())
+    yield compare(["chan-style"], times, plots[:, 0], 2.0, runs=20, seed=1)
+    yield PairedDifference("constant-velocity", "chan-style", "predicted", "rmse",
+                           *np.random.default_rng(1).random(5), 200)  # fmt: skip
+    yield Ranked("alpha-beta", {"mixed": 1.0}, {"mixed": 1.0}, 0.1, 0.2, 0.3)
+
+
+def test_values_with_arrays_are_one_short_line():
+    found = {type(value).__name__: repr(value) for value in values()}
+    assert len(found) > 30
+    wrong = {name: text for name, text in found.items() if len(text) >= 200 or "\n" in text}
+    assert not wrong
+    assert not {name: text for name, text in found.items() if "array(" in text or " at 0x" in text}
+
+
+def test_what_a_summary_says():
+    found = compare(["chan-style"], range(6), np.arange(12.0).reshape(6, 2), 2.0, runs=20, seed=1)
+    assert repr(found) == '<Comparison: names=("chan-style",), runs=20, seed=1, sigma=2>'
+    store = TrackStore("fixed:alpha=0.5:beta=0.2", 2)
+    store.add(store.tracker.start([[1.0, 2.0], [3.0, 5.0], [0.0, 9.0]], 0.0))
+    assert repr(store) == (
+        "<TrackStore: tracker=AlphaBetaTracker(FixedGains(0.5, 0.2)), n_axes=2, tracks=3>"
+    )
+    prediction = store.predict([0, 2], 4.0)
+    assert repr(prediction) == "<Prediction: time.shape=(2,), position.shape=(2, 2)>"
+    track = ft.AlphaBetaTracker("fixed:alpha=0.5:beta=0.2").start([1.0, 2.0], 0.25)
+    assert repr(track) == "<TrackState: time=0.25, shape=(2,)>"
+
+
+def test_the_beginning_of_what_is_long():
+    class Long:
+        names = tuple("abcdef")
+        text = "x" * 500
+        none = None
+        by_name = MappingProxyType({"p": np.ones(3), "q": np.ones(3)})
+
+    assert summary(Long(), "names", "none", "by_name", third=1 / 3) == (
+        '<Long: names=("a", "b", "c", "d", … 6 in all), none=None, by_name=("p", "q"), '
+        "third=0.333333>"
+    )
+    assert summary(Long(), "text") == f'<Long: text="{"x" * 70}…>'

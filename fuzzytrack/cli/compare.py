@@ -12,7 +12,7 @@ from fuzzytrack.cli.output import print_json, print_table, progress, show, with_
 from fuzzytrack.cli.recording import read_recording
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.trackers.catalog import as_trackers
 
 __all__ = ["DEFAULT_TRACKERS", "compare", "print_comparison", "trackers_named"]
 
@@ -59,10 +59,7 @@ def compare(
 def trackers_named(text: str) -> dict[str, Tracker]:
     """Trackers as written after ``--trackers``."""
     names = options.names(text, "--trackers")
-    doubled = [name for name in names if names.count(name) > 1]
-    if doubled:
-        raise ValueError(f"--trackers: {doubled[0]!r} is given twice")
-    found = {name: make_tracker(name) for name in names}
+    found = as_trackers(names)
     for name, tracker in found.items():
         if not getattr(tracker, "causal", True):
             typer.echo(f"note: {name} uses the plot that it predicts", err=True)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import Operators, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.reprs import summary
 
 __all__ = ["Conclusions", "conclusions", "conjoin", "disjoin", "output_grid", "strengths"]
 
@@ -59,6 +60,9 @@ class Conclusions:
     confidence: Array
     y: Array
     grades: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "operators", "grades")
 
     def infer(self, strength: Array) -> Array:
         """Fuzzy output, shape (n, n_grid), from rule strengths, shape (n, n_rules)."""

@@ -11,7 +11,7 @@ from fuzzytrack.fuzzy.rulebase import RuleBase, remember_origin
 from fuzzytrack.shipped import Shipped
 from fuzzytrack.yamltree import Document
 
-__all__ = ["load_rulebase", "loads_rulebase", "rulebase_path", "shipped_rulebases"]
+__all__ = ["as_rulebase", "load_rulebase", "loads_rulebase", "rulebase_path", "shipped_rulebases"]
 
 SCHEMA_FILE = "rulebase.schema.json"
 
@@ -68,6 +68,34 @@ def load_rulebase(name_or_path: str | os.PathLike[str]) -> RuleBase:
     """
     rules = Reader(_SHIPPED.document(name_or_path)).rulebase()
     return remember_origin(rules, _SHIPPED.spelled(name_or_path))
+
+
+def as_rulebase(rules: RuleBase | str | os.PathLike[str], name: str = "rules") -> RuleBase:
+    """The rule base itself, or the one of a name or path; see `load_rulebase`.
+
+    Every function that takes a rule base takes a name or path as well, by this function.
+
+    Parameters
+    ----------
+    rules : RuleBase, str or path
+    name : str
+        Name of the argument, for messages.
+
+    Raises
+    ------
+    RuleBaseError
+        As for `load_rulebase`.
+    TypeError
+        If it is something else.
+    """
+    if isinstance(rules, str | os.PathLike):
+        return load_rulebase(rules)
+    if not isinstance(rules, RuleBase):
+        raise TypeError(
+            f"{name} must be a RuleBase, the name of a shipped one or the path of a file, "
+            f"got {type(rules).__name__}"
+        )
+    return rules
 
 
 def shipped_rulebases() -> tuple[str, ...]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.reprs import summary
 
 __all__ = ["SHAPES", "FuzzySet", "Shape"]
 
@@ -58,6 +59,9 @@ class Shape:
     support: Callable[[Parameters], tuple[float, float]]
     breakpoints: Callable[[Parameters], Parameters]
     expression: Callable[[Parameters, str], str]
+
+    def __repr__(self) -> str:
+        return summary(self, "parameters", "requirement")
 
 
 def _ascending(parameters: Parameters) -> bool:

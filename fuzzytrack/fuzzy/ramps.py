@@ -17,6 +17,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import Conclusions, conclusions
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.reprs import summary
 
 __all__ = ["Ramps", "find_ramps"]
 
@@ -41,6 +42,9 @@ class Ramps:
 
     ends: tuple[list[tuple[float, float]], ...]
     cells: dict[str, Array]
+
+    def __repr__(self) -> str:
+        return summary(self, "ends", "cells")
 
     def lines(self) -> list[str]:
         """Python source: ``y0``, ``y1``, … of ``x0``, ``x1``, ….

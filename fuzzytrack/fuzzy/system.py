@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,10 +17,11 @@ from fuzzytrack.fuzzy.defuzzification import defuzzify
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
 from fuzzytrack.fuzzy.inference import Conclusions, conclusions, disjoin, output_grid, strengths
 from fuzzytrack.fuzzy.inference import conjoin as _conjoin
+from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.relation import compose, relation
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.table import InterpolationTable, build_table, default_nodes
-from fuzzytrack.reprs import call
+from fuzzytrack.reprs import call, summary
 
 __all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
 
@@ -62,14 +64,18 @@ class Surface:
     y: Array
     values: Array
 
+    def __repr__(self) -> str:
+        return summary(self, "x_name", "y_name", "output", "values")
+
 
 class FuzzySystem:
     """Evaluates a rule base.
 
     Parameters
     ----------
-    rules : RuleBase
-        The rule base.
+    rules : RuleBase, str or path
+        The rule base; or the name of a shipped one or the path of a file, as for
+        `fuzzytrack.load_rulebase`.
     method : {"exact", "relation", "table"}
         ``exact`` evaluates the membership functions at the input itself and only the rules that
         fire; ``relation`` reads the discrete relational matrix at the nearest grid point (Llinas
@@ -83,6 +89,10 @@ class FuzzySystem:
 
     Raises
     ------
+    RuleBaseError
+        If there is no such rule base.
+    TypeError
+        If `rules` is something else.
     ValueError
         If the method is unknown, or the algebra does not allow it (see Notes).
 
@@ -95,7 +105,7 @@ class FuzzySystem:
 
     def __init__(
         self,
-        rules: RuleBase,
+        rules: RuleBase | str | os.PathLike[str],
         method: str = "exact",
         *,
         fuzzification: Fuzzification | None = None,
@@ -103,7 +113,7 @@ class FuzzySystem:
     ) -> None:
         if method not in METHODS:
             raise ValueError(f"method: unknown {method!r}; one of {', '.join(METHODS)}")
-        self.rules = rules
+        self.rules = rules = as_rulebase(rules)
         self.method = method
         self.fuzzification = fuzzification or Fuzzification()
         self.table_nodes = default_nodes(len(rules.inputs)) if table_nodes is None else table_nodes

@@ -9,6 +9,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.reprs import summary
 
 __all__ = ["InterpolationTable", "build_table", "default_nodes"]
 
@@ -39,6 +40,9 @@ class InterpolationTable:
     axes: tuple[Array, ...]
     values: dict[str, Array]
     bounds: dict[str, float]
+
+    def __repr__(self) -> str:
+        return summary(self, "values", "bounds", shape=tuple(map(len, self.axes)))
 
     def __call__(self, points: Array) -> dict[str, Array]:
         """Multilinear interpolation at `points`, shape (n, n_inputs), all within the axes."""

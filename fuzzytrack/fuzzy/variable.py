@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.reprs import summary
 
 __all__ = ["GRIDS", "Universe", "Variable"]
 
@@ -127,6 +128,9 @@ class Variable:
     label: str = ""
     unit: str = ""
     _index: dict[str, int] = field(init=False, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        return summary(self, "name", "universe", "set_names")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sets", tuple(self.sets))

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.reprs import summary
 
 __all__ = [
     "Certificate",
@@ -62,6 +63,9 @@ class Certificate:
     vertices: Array
     sequence: Array
     growth: float
+
+    def __repr__(self) -> str:
+        return summary(self, "verdict", "rate", "growth", "vertices", "sequence")
 
 
 def error_matrix(alpha: ArrayLike, beta: ArrayLike) -> Array:

@@ -16,6 +16,7 @@ from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.formats import PARQUET, Source, open_table
 from fuzzytrack.io.table import Table, Words, no_rows, silent
+from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 
 __all__ = [
@@ -57,6 +58,9 @@ class Piece:
     plots: Array
     rows: NDArray[np.int64]
     file: str = ""
+
+    def __repr__(self) -> str:
+        return summary(self, "file", "ids", "plots")
 
     @classmethod
     def of(cls, ids: ArrayLike, time: ArrayLike, plots: ArrayLike) -> Piece:
@@ -109,6 +113,9 @@ class Track:
     time: Array
     plots: Array
 
+    def __repr__(self) -> str:
+        return summary(self, "id", "plots")
+
 
 @dataclass(frozen=True, eq=False)
 class Recording:
@@ -131,6 +138,9 @@ class Recording:
     id: str
     axes: tuple[str, ...]
     tracks: tuple[Track, ...]
+
+    def __repr__(self) -> str:
+        return summary(self, "file", "axes", tracks=len(self.tracks))
 
     @property
     def columns(self) -> Columns:

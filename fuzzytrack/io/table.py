@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
+from fuzzytrack.reprs import summary
 
 __all__ = ["Column", "Kind", "Table", "Values", "Words", "checked_names", "no_rows", "silent"]
 
@@ -45,6 +46,9 @@ class Words(Sequence[str]):
 
     names: tuple[str, ...]
     codes: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return summary(self, "names", "codes")
 
     @classmethod
     def same(cls, word: str, count: int) -> Words:
@@ -90,6 +94,9 @@ class Table:
     rows: NDArray[np.int64]
     numbers: dict[str, Array]
     words: dict[str, Words]
+
+    def __repr__(self) -> str:
+        return summary(self, "file", "numbers", "words", rows=len(self.rows))
 
     @classmethod
     def of(cls, file: str, columns: Sequence[Column], rows: NDArray[np.int64]) -> Table:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.reprs import summary
 
 __all__ = ["LaneProgram"]
 
@@ -42,3 +43,6 @@ class LaneProgram:
     memory: tuple[float, ...]
     step: Callable[[int], Callable[[Any, int], None]]
     steady: Callable[[int, bool], Callable[[Any, int, float, Any, Any], None]] | None = None
+
+    def __repr__(self) -> str:
+        return summary(self, "rows", "memory")

@@ -16,6 +16,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.kernels.compile import entry_point
 from fuzzytrack.lanes.layout import BLOCK, GAINS, OUTPUTS, Rows, aligned
 from fuzzytrack.lanes.program import LaneProgram
+from fuzzytrack.reprs import summary
 
 __all__ = ["InfinitePlotError", "Runner"]
 
@@ -57,6 +58,9 @@ class Runner:
     common_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
     own_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
     _code: dict[tuple[object, type], Any] = field(default_factory=dict, init=False, repr=False)
+
+    def __repr__(self) -> str:
+        return summary(self, "program", "work", "horizon")
 
     @property
     def rows(self) -> Rows:

@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from fuzzytrack.reprs import summary
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -102,6 +104,9 @@ class Reproduction:
     rows: tuple[Row, ...]
     notes: tuple[str, ...] = ()
     pictures: Mapping[str, Callable[[], Figure]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return summary(self, "paper", "title", rows=len(self.rows))
 
     def ours(self, quantity: str, table: str | None = None) -> float:
         """Our number of a quantity.

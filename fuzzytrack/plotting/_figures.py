@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,9 +13,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
 
+from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 
+#: A rule base, or a name or path of one, or a system that has one.
+Rules = RuleBase | FuzzySystem | str | os.PathLike[str]
 AxesArray = NDArray[np.object_]
 
 # Okabe and Ito (2008): can be distinguished with any color vision; without yellow.
@@ -41,13 +45,9 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> None:
         raise ValueError(f"{name}: unknown {value!r}; one of {', '.join(allowed)}")
 
 
-def rules_of(rules: RuleBase | FuzzySystem) -> RuleBase:
-    """Rule base that was given, or that of the fuzzy system that was given."""
-    if isinstance(rules, RuleBase):
-        return rules
-    if isinstance(rules, FuzzySystem):
-        return rules.rules
-    raise ValueError(f"rules: must be a RuleBase or a FuzzySystem, got {type(rules).__name__}")
+def rules_of(rules: Rules, name: str = "rules") -> RuleBase:
+    """Rule base of a fuzzy system, or as `fuzzytrack.fuzzy.loading.as_rulebase` takes it."""
+    return rules.rules if isinstance(rules, FuzzySystem) else as_rulebase(rules, name)
 
 
 def panels(

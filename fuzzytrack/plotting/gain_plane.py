@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any
 
@@ -31,7 +32,7 @@ SMALL = 0.4
 
 def plot_gain_plane(
     gains: Visited | Mapping[str, Visited],
-    box: RuleBase | FuzzySystem | Box | None = None,
+    box: shared.Rules | Box | None = None,
     *,
     mark: Mapping[str, tuple[float, float]] | None = None,
     inset: bool | None = None,
@@ -44,7 +45,7 @@ def plot_gain_plane(
     gains : Gains, TrackResult, or mapping of str to either
         What to draw, with labels for the legend. Updates without gains (NaN) are left out, and
         gains that repeat are drawn once.
-    box : RuleBase, FuzzySystem, or ((low, high), (low, high)), optional
+    box : RuleBase, FuzzySystem, str or path, or ((low, high), (low, high)), optional
         Outline of what can be reached: limits of stiffness and of damping, or a rule base whose
         outputs have limits: those of stiffness and damping, or of alpha and beta, are drawn as the
         edge of an area; that of stiffness alone as a part of Kalata's curve.
@@ -125,10 +126,10 @@ def _pair(label: str, point: object) -> Array:
     return pair
 
 
-def _outline(box: RuleBase | FuzzySystem | Box) -> dict[str, Array]:
+def _outline(box: shared.Rules | Box) -> dict[str, Array]:
     """Trace the gains along the edge of what the outputs can reach, shape (n, 2), with a label."""
-    if isinstance(box, RuleBase | FuzzySystem):
-        rules = shared.rules_of(box)
+    if isinstance(box, RuleBase | FuzzySystem | str | os.PathLike):
+        rules = shared.rules_of(box, "box")
         outputs = find_gain_outputs(rules.output_names)
         if outputs is None:
             raise ValueError(

@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fuzzytrack.fuzzy.membership import FuzzySet
-from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.plotting import _figures as shared
 
@@ -22,7 +20,7 @@ FONT_SIZE = 9.0
 
 
 def plot_memberships(
-    rules: RuleBase | FuzzySystem,
+    rules: shared.Rules,
     variables: str | Sequence[str] | None = None,
     *,
     axes: Axes | Sequence[Axes] | None = None,
@@ -31,8 +29,8 @@ def plot_memberships(
 
     Parameters
     ----------
-    rules : RuleBase or FuzzySystem
-        What to draw.
+    rules : RuleBase, FuzzySystem, str or path
+        What to draw; a name or path as for `fuzzytrack.load_rulebase`.
     variables : str or sequence of str, optional
         Names of inputs and outputs; all, inputs first, unless given.
     axes : Axes or sequence of Axes, optional

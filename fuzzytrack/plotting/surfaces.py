@@ -14,7 +14,6 @@ from matplotlib.ticker import MaxNLocator
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import output_grid
-from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.plotting import _figures as shared
@@ -42,7 +41,7 @@ class _Picture:
 
 
 def plot_surface(
-    rules: RuleBase | FuzzySystem,
+    rules: shared.Rules,
     output: str | None = None,
     points: int = 101,
     method: str | None = None,
@@ -56,8 +55,9 @@ def plot_surface(
 
     Parameters
     ----------
-    rules : RuleBase or FuzzySystem
-        What to draw. With one input the surface is a curve.
+    rules : RuleBase, FuzzySystem, str or path
+        What to draw; a name or path as for `fuzzytrack.load_rulebase`. With one
+        input the surface is a curve.
     output : str, optional
         Name of one output; all unless given.
     points : int
@@ -104,7 +104,7 @@ def plot_surface(
 
 
 def plot_gain_surfaces(
-    rules: RuleBase | FuzzySystem,
+    rules: shared.Rules,
     points: int = 101,
     method: str | None = None,
     style: str = "surface",
@@ -115,7 +115,7 @@ def plot_gain_surfaces(
 
     Parameters
     ----------
-    rules : RuleBase or FuzzySystem
+    rules : RuleBase, FuzzySystem, str or path
         With outputs ``stiffness`` and ``damping``, or ``stiffness`` alone with the damping of
         Kalata's gains, converted to α and β in the w-domain; or with outputs ``alpha`` and
         ``beta``, and maybe ``gamma``, drawn as they are.
@@ -158,7 +158,7 @@ def plot_gain_surfaces(
     return _draw(pictures, style, axes)
 
 
-def _system(rules: RuleBase | FuzzySystem, method: str | None) -> FuzzySystem:
+def _system(rules: shared.Rules, method: str | None) -> FuzzySystem:
     base = shared.rules_of(rules)
     if method is not None:
         shared.choice("method", method, METHODS)
@@ -290,7 +290,7 @@ def _name_inputs(ax: Axes, picture: _Picture, ticks: int, width: int = 60) -> No
 
 
 def plot_relation(
-    rules: RuleBase | FuzzySystem,
+    rules: shared.Rules,
     output: str | None = None,
     *,
     at: float | None = None,
@@ -300,7 +300,7 @@ def plot_relation(
 
     Parameters
     ----------
-    rules : RuleBase or FuzzySystem
+    rules : RuleBase, FuzzySystem, str or path
         With one input.
     output : str, optional
         Name of the output; the first unless given.

@@ -16,6 +16,7 @@ from pathlib import Path
 from types import ModuleType
 
 from fuzzytrack.errors import Location, PluginError
+from fuzzytrack.reprs import summary
 
 __all__ = ["Script", "load_script", "load_scripts", "loaded_scripts", "place_in_script"]
 
@@ -34,6 +35,9 @@ class Script:
 
     path: str
     text: bytes
+
+    def __repr__(self) -> str:
+        return summary(self, "path")
 
     @property
     def module(self) -> str:

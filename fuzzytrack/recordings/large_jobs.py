@@ -13,6 +13,7 @@ from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
+from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_lane_tracker
@@ -45,6 +46,9 @@ class LargeJob:
     tracker: LaneTracker
     sigma: float | None
     rows: int
+
+    def __repr__(self) -> str:
+        return summary(self, "tracker", "rows", files=len(self.files))
 
     @classmethod
     def of(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_tracker
@@ -40,6 +41,9 @@ class Batch:
     members: NDArray[np.int64]
     times: Array
     places: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return summary(self, "members", "places")
 
 
 def batches(times: Sequence[Array]) -> tuple[Batch, ...]:

@@ -12,6 +12,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.recording import Piece
 from fuzzytrack.lanes.layout import GAINS
+from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
 from fuzzytrack.trackers.result import checked_keep
@@ -35,6 +36,9 @@ class TrackedPiece:
 
     piece: Piece
     outputs: Mapping[str, Array]
+
+    def __repr__(self) -> str:
+        return summary(self, "piece", "outputs")
 
 
 def run_iter(

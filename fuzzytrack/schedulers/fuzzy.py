@@ -13,7 +13,7 @@ import numpy as np
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.kernel import infer_function
-from fuzzytrack.fuzzy.loading import load_rulebase
+from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
@@ -68,13 +68,7 @@ class FuzzyScheduler(GainScheduler):
     settings: SchedulerSettings = field(init=False, repr=False, compare=False)
 
     def __init__(self, rules: RuleBase | str | os.PathLike[str], method: str = "exact") -> None:
-        if isinstance(rules, str | os.PathLike):
-            rules = load_rulebase(rules)
-        if not isinstance(rules, RuleBase):
-            raise TypeError(
-                "rules must be a RuleBase, the name of a shipped one or the path of a file, "
-                f"got {type(rules).__name__}"
-            )
+        rules = as_rulebase(rules)
         object.__setattr__(self, "rules", rules)
         object.__setattr__(self, "method", method)
         object.__setattr__(self, "settings", read_settings(rules))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from itertools import product
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains import certificate
 from fuzzytrack.gains.certificate import (
@@ -28,14 +30,18 @@ REACHES = ("universe", "rules")
 
 
 def certify(
-    gains: ArrayLike | RuleBase, *, reach: str = "universe", max_length: int = 8
+    gains: ArrayLike | RuleBase | str | os.PathLike[str],
+    *,
+    reach: str = "universe",
+    max_length: int = 8,
 ) -> Certificate:
     """Certify a set of gains, or all gains that a rule base can reach, under arbitrary switching.
 
     Parameters
     ----------
-    gains : array_like, shape (n, 2), or RuleBase
-        (α, β) pairs, whose convex hull is the set; or a rule base that schedules gains.
+    gains : array_like, shape (n, 2), or RuleBase, str or path
+        (α, β) pairs, whose convex hull is the set; or a rule base that schedules gains, itself or
+        as for `fuzzytrack.load_rulebase`.
     reach : {"universe", "rules"}
         For a rule base, see `reachable_gains`.
     max_length : int
@@ -48,24 +54,36 @@ def certify(
     Raises
     ------
     RuleBaseError
-        If the rule base does not schedule α and β, see `reachable_gains`.
+        If there is no such rule base, or it does not schedule α and β, see `reachable_gains`.
+    TypeError
+        If `gains` is something else.
     ValueError
         If an argument is out of range.
     """
-    if not isinstance(gains, RuleBase):
-        return certificate.certify(gains, max_length)
-    around, reached = _gains(gains, reach)
+    if not isinstance(gains, RuleBase | str | os.PathLike):
+        return certificate.certify(_pairs(gains), max_length)
+    around, reached = _gains(as_rulebase(gains, "gains"), reach)
     return certificate.certify(around, max_length, reached=reached)
 
 
-def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
+def _pairs(gains: ArrayLike) -> Array:
+    try:
+        return np.asarray(gains, dtype=np.float64)
+    except TypeError as error:
+        raise TypeError(
+            "gains must be pairs (alpha, beta), a RuleBase, the name of a shipped one or the path "
+            f"of a file, got {type(gains).__name__}"
+        ) from error
+
+
+def reachable_gains(rules: RuleBase | str | os.PathLike[str], reach: str = "universe") -> Array:
     """Gains whose convex hull contains all gains that a rule base can schedule.
 
     Parameters
     ----------
-    rules : RuleBase
+    rules : RuleBase, str or path
         With outputs stiffness and damping, stiffness alone (damping on Kalata's curve), or alpha
-        and beta.
+        and beta; itself or as for `fuzzytrack.load_rulebase`.
     reach : {"universe", "rules"}
         ``universe``: all gains within the universes of the outputs, for any rules. ``rules``: the
         hull of the conclusions of the single rules, which is smaller; it is valid where every
@@ -88,7 +106,7 @@ def reachable_gains(rules: RuleBase, reach: str = "universe") -> Array:
     The gains of an opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are not included: it ends
     after a few plots, so whether the error shrinks in the long run does not depend on it.
     """
-    return _gains(rules, reach)[0]
+    return _gains(as_rulebase(rules), reach)[0]
 
 
 def sequence_steps(rules: RuleBase, found: Certificate) -> list[dict[str, float]]:

@@ -12,6 +12,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.as_json import rule_as_json
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.reprs import summary
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
 from fuzzytrack.schedulers.gain_outputs import gains_of
 
@@ -54,6 +55,9 @@ class Review:
     symmetry: str
     table_bounds: dict[str, float]
     schedules: str
+
+    def __repr__(self) -> str:
+        return summary(self, "rules", "schedules")
 
     def as_json(self) -> dict[str, Any]:
         """Review as JSON prints it."""

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import positive
+from fuzzytrack.reprs import summary
 
 __all__ = ["WHITE", "Noise", "Plots", "check_runs", "noisy_plots", "streams", "truth_of_runs"]
 
@@ -98,6 +99,9 @@ class Plots:
 
     z: Array
     sigma: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "z", "sigma")
 
 
 def streams(seed: int, runs: int) -> list[np.random.SeedSequence]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.trajectories import (
     constant_acceleration,
     constant_velocity,
@@ -246,6 +247,9 @@ class TrackSet:
     position: Array
     kind: NDArray[np.str_]
     first_scored: int
+
+    def __repr__(self) -> str:
+        return summary(self, "name", "position")
 
 
 def track_set(name: str, tracks: int, seed: int) -> TrackSet:

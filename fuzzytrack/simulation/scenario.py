@@ -10,6 +10,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive
+from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import WHITE, Noise, Plots, noisy_plots, truth_of_runs
 from fuzzytrack.simulation.sensor_field import SensorField
 
@@ -151,6 +152,9 @@ class Scenario:
     process_sigma: float | None = None
     trackers: tuple[str, ...] = field(default=())
     source: str = ""
+
+    def __repr__(self) -> str:
+        return summary(self, "name", "position", "trackers")
 
     def __post_init__(self) -> None:
         time, position = finite("time", self.time), finite("position", self.position)

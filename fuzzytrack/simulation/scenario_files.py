@@ -12,6 +12,7 @@ from fuzzytrack.simulation.scenario_reader import ScenarioReader
 from fuzzytrack.yamltree import Document
 
 __all__ = [
+    "as_scenario",
     "load_scenario",
     "loads_scenario",
     "scenario_path",
@@ -76,6 +77,26 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
         If there is no such name, or the file cannot be read, or is no scenario.
     """
     return ScenarioReader(_SHIPPED.document(name_or_path)).scenario()
+
+
+def as_scenario(scenario: Scenario | str | os.PathLike[str]) -> Scenario:
+    """The scenario itself, or the one of a name or path; see `load_scenario`.
+
+    Raises
+    ------
+    ScenarioError
+        As for `load_scenario`.
+    TypeError
+        If it is something else.
+    """
+    if isinstance(scenario, str | os.PathLike):
+        return load_scenario(scenario)
+    if not isinstance(scenario, Scenario):
+        raise TypeError(
+            "scenario must be a Scenario, the name of a shipped one or the path of a file, "
+            f"got {type(scenario).__name__}"
+        )
+    return scenario
 
 
 def scenario_source(name_or_path: str | os.PathLike[str]) -> str:

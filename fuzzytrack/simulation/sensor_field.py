@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, positive
+from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.fusion import fuse
 from fuzzytrack.simulation.noise import WHITE, Noise, Plots, truth_of_runs
 
@@ -54,6 +55,9 @@ class SensorField:
     range_sigma: Array
     bearing_sigma: Array
     detection: float = 1.0
+
+    def __repr__(self) -> str:
+        return summary(self, "position", "detection")
 
     def __init__(
         self,

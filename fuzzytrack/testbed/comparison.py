@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.recordings.ragged import Batch, batches
+from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import check_runs
 from fuzzytrack.tasks import Progress
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.catalog import as_trackers
+from fuzzytrack.trackers.catalog import Trackers, as_trackers
 
 __all__ = ["Comparison", "compare", "compare_tracks"]
 
@@ -54,6 +55,9 @@ class Comparison:
     predicted_mse: Array
     filtered_mse: Array
     measured_mse: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "names", "runs", "seed", "sigma")
 
     @property
     def runs(self) -> int:
@@ -112,7 +116,7 @@ class Comparison:
 
 
 def compare(
-    trackers: Mapping[str, Tracker | str],
+    trackers: Trackers,
     t: ArrayLike,
     truth: ArrayLike,
     sigma: float,
@@ -124,9 +128,9 @@ def compare(
 
     Parameters
     ----------
-    trackers : mapping of str to Tracker or str
+    trackers : mapping of str to Tracker or str, or sequence of str
         The trackers by name, at least one; or what names them, see
-        `fuzzytrack.trackers.catalog.make_tracker`.
+        `fuzzytrack.trackers.catalog.as_trackers`.
     t : array_like, shape (n_steps,)
         Times (s), increasing.
     truth : array_like, shape (n_steps, n_axes)
@@ -146,6 +150,8 @@ def compare(
 
     Raises
     ------
+    TypeError
+        If a tracker is something else.
     ValueError
         If there is no tracker, `sigma`, `runs` or `seed` is out of range, shapes do not fit, or
         the track is too short for a prediction.
@@ -160,7 +166,7 @@ def compare(
 
 
 def compare_tracks(
-    trackers: Mapping[str, Tracker | str],
+    trackers: Trackers,
     tracks: Sequence[tuple[ArrayLike, ArrayLike]],
     sigma: float,
     runs: int,
@@ -171,7 +177,7 @@ def compare_tracks(
 
     Parameters
     ----------
-    trackers : mapping of str to Tracker or str
+    trackers : mapping of str to Tracker or str, or sequence of str
         As for `compare`.
     tracks : sequence of (t, truth)
         Times and true positions of each track, as for `compare`; all with the same axes.
@@ -187,21 +193,20 @@ def compare_tracks(
     ValueError
         As for `compare`.
     """
-    _check(trackers, sigma, runs, seed)
-    sums = _Sums(as_trackers(trackers), tracks, sigma)
+    _check(sigma, runs, seed)
+    made = as_trackers(trackers)
+    sums = _Sums(made, tracks, sigma)
     streams = np.random.SeedSequence(seed).spawn(runs)
     size = max(1, min(runs, _BATCH // sums.truth.size))
     starts = range(0, runs, size)
     for batch, start in enumerate(starts):
         for number in sums.add(streams[start : start + size]):
             if progress is not None:
-                progress((batch + number / len(trackers)) / len(starts))
+                progress((batch + number / len(made)) / len(starts))
     return sums.comparison(seed)
 
 
-def _check(trackers: Mapping[str, Tracker | str], sigma: float, runs: int, seed: int) -> None:
-    if not trackers:
-        raise ValueError("trackers: at least one is needed")
+def _check(sigma: float, runs: int, seed: int) -> None:
     if not (math.isfinite(sigma) and sigma > 0):
         raise ValueError(f"sigma must be positive, got {sigma}")
     check_runs(runs, seed)

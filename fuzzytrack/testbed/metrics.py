@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
+from fuzzytrack.reprs import summary
 
 __all__ = [
     "Consistency",
@@ -51,6 +52,9 @@ class Estimate:
     value: Array
     error: Array
 
+    def __repr__(self) -> str:
+        return summary(self, "value", "error")
+
 
 @dataclass(frozen=True, eq=False)
 class Peak:
@@ -66,6 +70,9 @@ class Peak:
 
     value: Array
     scan: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return summary(self, "value", "scan")
 
 
 @dataclass(frozen=True)
@@ -103,6 +110,9 @@ class PairedDifference:
     high: float
     runs: int
 
+    def __repr__(self) -> str:
+        return summary(self, "first", "second", "difference", "low", "high", "runs")
+
     @property
     def significant(self) -> bool:
         """Whether 0 is outside the interval."""
@@ -133,6 +143,9 @@ class Consistency:
     scan_mean: Array
     scan_low: Array
     scan_high: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "level", "mean", "scan_mean")
 
     @property
     def consistent(self) -> Mask:

@@ -13,12 +13,13 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.noise import Plots, check_runs, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.simulation.scenario_files import as_scenario
 from fuzzytrack.simulation.starting import prepare_start
 from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.testbed.chunk_store import ChunkStore
 from fuzzytrack.testbed.results import Results, Sample
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.catalog import as_trackers
+from fuzzytrack.trackers.catalog import Trackers, as_trackers
 from fuzzytrack.trackers.lane_tracker import announce
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
@@ -33,8 +34,8 @@ _RUNS = 124
 
 
 def monte_carlo(
-    scenario: Scenario,
-    trackers: Mapping[str, Tracker | str] | None,
+    scenario: Scenario | str | os.PathLike[str],
+    trackers: Trackers | None,
     runs: int,
     seed: int,
     *,
@@ -47,10 +48,11 @@ def monte_carlo(
 
     Parameters
     ----------
-    scenario : Scenario
-        Target and sensors.
-    trackers : mapping of str to Tracker or str, or None
-        The trackers by name, or what names them, see `fuzzytrack.trackers.catalog.make_tracker`;
+    scenario : Scenario, str or path
+        Target and sensors; or the name of a shipped scenario or the path of a file, as for
+        `fuzzytrack.simulation.scenario_files.load_scenario`.
+    trackers : mapping of str to Tracker or str, sequence of str, or None
+        The trackers by name; or what names them, see `fuzzytrack.trackers.catalog.as_trackers`;
         those of the scenario if None.
     runs : int
         Number of Monte Carlo runs, at least 1.
@@ -74,6 +76,8 @@ def monte_carlo(
 
     Raises
     ------
+    TypeError
+        If `scenario` or a tracker is something else.
     ValueError
         If there is no tracker or no such tracker, `runs` or `seed` is out of range, `folder` holds
         chunks and `resume` is False, or they are of another job; names the difference.
@@ -108,11 +112,8 @@ def monte_carlo(
     (array([11.]), array([0.5]))
     """
     check_runs(runs, seed)
-    if trackers is None:
-        trackers = {name: name for name in scenario.trackers}
-    if not trackers:
-        raise ValueError("trackers: at least one is needed")
-    made = as_trackers(trackers)
+    scenario = as_scenario(scenario)
+    made = as_trackers(scenario.trackers if trackers is None else trackers)
     size = _chunk_runs(scenario)
     chunks = [range(first, min(first + size, runs)) for first in range(0, runs, size)]
     store = None

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import number, positive
+from fuzzytrack.reprs import summary
 from fuzzytrack.testbed import metrics, results_as
 from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
 
@@ -46,6 +47,9 @@ class Sample:
     alpha: Array
     beta: Array
     gamma: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "truth", "predicted")
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +101,9 @@ class Results:
     nis: Array | None
     nees: Array | None
     sample: Sample
+
+    def __repr__(self) -> str:
+        return summary(self, "scenario", "names", "runs", "seed", scans=len(self.time))
 
     @property
     def runs(self) -> int:

@@ -156,4 +156,4 @@ def _expect_a_tracker(subject: Any) -> None:
 def _spelt(subject: Any) -> str:
     if isinstance(subject, type):
         return f"the class {subject.__name__}; give an object, as {subject.__name__}() makes it"
-    return f"a {type(subject).__name__}"
+    return type(subject).__name__

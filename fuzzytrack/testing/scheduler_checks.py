@@ -34,7 +34,7 @@ def kernel_takes_five_arguments(scheduler: GainScheduler, seed: int) -> None:
     kernel = _kernel(scheduler)
     expect(
         isinstance(kernel, FunctionType),
-        f"kernel(n_axes) must return a plain function, got a {type(kernel).__name__}: define it "
+        f"kernel(n_axes) must return a plain function, got {type(kernel).__name__}: define it "
         "inside, and take what it needs of self into variables before",
     )
     signature = inspect.signature(kernel)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -14,7 +14,7 @@ from fuzzytrack.errors import PluginWarning, RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.plugins import Registry
-from fuzzytrack.schedulers import FuzzyScheduler, schedulers
+from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, schedulers
 from fuzzytrack.schedulers.catalog import READERS, scheduling_rulebases, take_scheduler
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
@@ -22,8 +22,13 @@ from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.yamltree import suggestion
 
 __all__ = [
-    "CatalogEntry", "as_lane_tracker", "as_tracker", "as_trackers", "catalog", "make_tracker",
+    "CatalogEntry", "Trackers", "as_lane_tracker", "as_tracker", "as_trackers", "catalog",
+    "make_tracker",
 ]  # fmt: skip
+
+
+#: What functions take for several trackers; see `as_trackers`.
+Trackers = Mapping[str, Tracker | str] | Sequence[str]
 
 
 @dataclass(frozen=True)
@@ -78,12 +83,35 @@ def catalog() -> tuple[CatalogEntry, ...]:
     return tuple(entries)
 
 
-def as_tracker(tracker: Tracker | str) -> Tracker:
+def as_tracker(tracker: Tracker | str, name: str = "tracker") -> Tracker:
     """The tracker itself, or the one that a text names; see `make_tracker`.
 
     Every function that takes a tracker takes a text as well, by this function.
+
+    Parameters
+    ----------
+    tracker : Tracker or str
+    name : str
+        Name of the argument, for messages.
+
+    Raises
+    ------
+    TypeError
+        If it is neither.
+    ValueError, RuleBaseError
+        As for `make_tracker`.
     """
-    return make_tracker(tracker) if isinstance(tracker, str) else tracker
+    if isinstance(tracker, str):
+        return make_tracker(tracker)
+    if isinstance(tracker, Tracker) and not isinstance(tracker, type):
+        return tracker
+    # A mistake that is easily made: a scheduler only chooses the gains of a tracker.
+    wrap = isinstance(tracker, GainScheduler)
+    raise TypeError(
+        f"{name} must be a Tracker, or a text such as 'fixed:alpha=0.5:beta=0.2', "
+        f"got {specs.kind_of(tracker)}"
+        f"{'; wrap it: AlphaBetaTracker(...)' if wrap else ''}"
+    )
 
 
 def as_lane_tracker(tracker: Tracker | str) -> LaneTracker:
@@ -103,9 +131,46 @@ def as_lane_tracker(tracker: Tracker | str) -> LaneTracker:
     return found
 
 
-def as_trackers(trackers: Mapping[str, Tracker | str]) -> dict[str, Tracker]:
-    """Trackers by name, each as for `as_tracker`."""
-    return {name: as_tracker(tracker) for name, tracker in trackers.items()}
+def as_trackers(trackers: Trackers) -> dict[str, Tracker]:
+    """Trackers by name.
+
+    Every function that takes several trackers takes them by this function.
+
+    Parameters
+    ----------
+    trackers : mapping of str to Tracker or str, or sequence of str
+        Each as for `as_tracker`. Trackers in a sequence of texts, or a text alone, are named by
+        their texts.
+
+    Raises
+    ------
+    TypeError
+        If it is something else; names the entry.
+    ValueError, RuleBaseError
+        If there is no tracker, or a text stands there twice; as for `make_tracker`.
+    """
+    named: Mapping[str, Tracker | str]
+    if isinstance(trackers, Mapping):
+        named = trackers
+    else:
+        texts = [trackers] if isinstance(trackers, str) else _texts(trackers)
+        named = {text: text for text in texts}
+        doubled = [text for text in texts if texts.count(text) > 1]
+        if doubled:
+            raise ValueError(f"trackers: {doubled[0]!r} is given twice")
+    if not named:
+        raise ValueError("trackers: at least one is needed")
+    return {name: as_tracker(each, f"trackers: {name!r}") for name, each in named.items()}
+
+
+def _texts(trackers: object) -> list[str]:
+    allowed = "trackers must be a mapping from names to trackers, or a sequence of texts"
+    if not isinstance(trackers, Sequence):
+        raise TypeError(f"{allowed}, got {specs.kind_of(trackers)}")
+    for each in trackers:
+        if not isinstance(each, str):
+            raise TypeError(f"{allowed}; the sequence holds {specs.kind_of(each)}")
+    return list(trackers)
 
 
 def make_tracker(spec: str) -> Tracker:
@@ -147,7 +212,9 @@ def make_tracker(spec: str) -> Tracker:
     except (TypeError, ValueError) as error:
         raise ValueError(f"tracker {spec!r}: {error}") from error
     if not isinstance(tracker, Tracker):
-        raise ValueError(f"tracker {spec!r}: its plug-in made a {type(tracker).__name__}")
+        raise ValueError(
+            f"tracker {spec!r}: its plug-in made no tracker, but {specs.kind_of(tracker)}"
+        )
     return tracker
 
 

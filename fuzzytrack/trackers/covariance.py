@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import nonnegative, number, within
+from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["TrackCovariance", "track_covariance"]
@@ -40,6 +41,9 @@ class TrackCovariance:
     innovation_variance: Array
     nis: Array
     axes: NDArray[np.int_]
+
+    def __repr__(self) -> str:
+        return summary(self, "predicted", "innovation_variance")
 
 
 def track_covariance(

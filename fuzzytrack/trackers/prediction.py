@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.reprs import summary
 
 __all__ = ["Prediction"]
 
@@ -38,3 +39,6 @@ class Prediction:
     acceleration: Array
     position_variance: Array
     innovation_variance: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "time", "position")

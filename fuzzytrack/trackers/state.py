@@ -10,6 +10,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.plots import gains_as_plots
+from fuzzytrack.reprs import summary
 
 __all__ = ["Gains", "TrackState", "check_rows"]
 
@@ -28,6 +29,9 @@ class Gains:
     alpha: Array
     beta: Array
     gamma: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "alpha", "beta", "gamma")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -55,6 +59,9 @@ class TrackState:
     shape: tuple[int, ...]
     lanes: Array
     rows: Rows
+
+    def __repr__(self) -> str:
+        return summary(self, "time", "shape")
 
     def __post_init__(self) -> None:
         # Compiled code uses the numbers as they are in memory, without checks.

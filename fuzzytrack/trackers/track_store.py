@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.prediction import Prediction
@@ -81,6 +82,9 @@ class TrackStore:
         self._time = np.empty(0)
         self._used = 0
         self._free: list[int] = []
+
+    def __repr__(self) -> str:
+        return summary(self, "tracker", "n_axes", tracks=len(self))
 
     def __len__(self) -> int:
         """Number of tracks."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.published import TRACK_SETS, track_set
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
@@ -40,6 +41,9 @@ class Ranked:
     own_change: float
     single_change: float
     single_error: float
+
+    def __repr__(self) -> str:
+        return summary(self, "name", "own_change", "single_change", "own")
 
 
 def rank(

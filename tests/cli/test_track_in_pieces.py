@@ -146,7 +146,12 @@ def test_no_rows(fails, tmp_path):
 
 
 def test_a_tracker_without_states(fails, folder, monkeypatch):
+    class Whole:
+        def run(self): ...
+
+        start = step = predict = run
+
     from fuzzytrack.cli import track as tracking
 
-    monkeypatch.setattr(tracking, "make_tracker", lambda name: object())
-    assert "object cannot go on from piece to piece" in fails("track", folder)
+    monkeypatch.setattr(tracking, "make_tracker", lambda name: Whole())
+    assert "Whole cannot go on from piece to piece" in fails("track", folder)

@@ -105,7 +105,6 @@ def test_axes_of_a_subfigure_belong_to_the_whole_figure(shipped):
             lambda r: plotting.plot_memberships(r, "E", axes=Figure().add_subplot(projection="3d")),
             "axes: needs flat axes",
         ),
-        (lambda r: plotting.plot_memberships(7), "rules: .*RuleBase.* got int"),
         (lambda r: plotting.plot_memberships(r, "F"), "variables: unknown 'F'; one of E, dE"),
     ],
 )

@@ -466,3 +466,14 @@ def test_damaged_texts_load_or_are_complained_of():
         except ScenarioError as error:
             outcomes.add(error.location.file)
     assert outcomes == {"loads", "<text>"}
+
+
+def test_a_scenario_by_its_name_in_an_experiment():
+    trackers = ["fixed:alpha=0.5:beta=0.2"]
+    by_name = monte_carlo("constant-velocity", trackers, 2, 1)
+    loaded = monte_carlo(load_scenario("constant-velocity"), trackers, 2, 1)
+    np.testing.assert_array_equal(by_name.predicted, loaded.predicted)
+    with pytest.raises(ScenarioError, match="unknown scenario 'constant-velocty'; did you mean"):
+        monte_carlo("constant-velocty", trackers, 2, 1)
+    with pytest.raises(TypeError, match=r"scenario must be a Scenario, the name .*, got int"):
+        monte_carlo(7, trackers, 2, 1)

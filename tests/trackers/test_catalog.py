@@ -14,7 +14,7 @@ from fuzzytrack.testbed.comparison import compare, compare_tracks
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.operations import count_operations
 from fuzzytrack.trackers import trackers
-from fuzzytrack.trackers.catalog import catalog, make_tracker
+from fuzzytrack.trackers.catalog import as_trackers, catalog, make_tracker
 from fuzzytrack.trackers.track_store import TrackStore
 from fuzzytrack.tuning.objective import prediction_mse
 
@@ -95,7 +95,7 @@ def test_values_follow_the_annotations():
         ("toy:level=1.5", "level must be a whole number, got '1.5'"),
         ("toy:level=1:flag=perhaps", "flag must be true or false"),
         ("toy:level=1:maybe=x", "maybe must be a number"),
-        ("toy-broken", "its plug-in made a str"),
+        ("toy-broken", "its plug-in made no tracker, but str"),
     ],
 )
 @pytest.mark.usefixtures("toy")
@@ -184,6 +184,39 @@ def test_a_text_stands_for_a_tracker(way):
     np.testing.assert_array_equal(WAYS[way](TEXT), WAYS[way](make_tracker(TEXT)))
     with pytest.raises(ValueError, match="no such tracker"):
         WAYS[way]("nothing")
+
+
+# `count_operations` takes a scheduler as well.
+@pytest.mark.parametrize("way", sorted(WAYS.keys() - {"count_operations"}))
+def test_a_scheduler_is_no_tracker(way):
+    with pytest.raises(TypeError, match=r"FixedGains; wrap it: AlphaBetaTracker\(\.\.\.\)$"):
+        WAYS[way](FixedGains(0.5, 0.2))
+
+
+def test_several_trackers():
+    fixed = AlphaBetaTracker(FixedGains(0.5, 0.2))
+    assert as_trackers({"a": fixed, "b": TEXT}) == {"a": fixed, "b": make_tracker(TEXT)}
+    both = as_trackers(["chan-style", TEXT])
+    assert both == {"chan-style": make_tracker("chan-style"), TEXT: make_tracker(TEXT)}
+    assert list(both) == ["chan-style", TEXT]
+    assert as_trackers(TEXT) == {TEXT: make_tracker(TEXT)}
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "message"),
+    [
+        ({"a": FixedGains}, TypeError, "trackers: 'a' must be a Tracker, .* the class FixedGains$"),
+        ({"a": 5}, TypeError, "trackers: 'a' must be a Tracker, or a text such as .*, got int$"),
+        (AlphaBetaTracker(FixedGains(0.5, 0.2)), TypeError, "sequence of texts, got AlphaBetaTr"),
+        (["chan-style", 5], TypeError, "sequence of texts; the sequence holds int"),
+        (["a", "b", "a"], ValueError, "trackers: 'a' is given twice"),
+        ({}, ValueError, "trackers: at least one is needed"),
+        ((), ValueError, "trackers: at least one is needed"),
+    ],
+)
+def test_what_several_trackers_are_not(given, error, message):
+    with pytest.raises(error, match=message):
+        as_trackers(given)
 
 
 def test_a_text_stands_for_a_scheduler(tmp_path):

@@ -8,6 +8,7 @@ import numpy as np
 
 from fuzzytrack.fuzzy.inference import conclusions, strengths
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.reprs import summary
 
 __all__ = ["Columns", "columns"]
 
@@ -31,6 +32,9 @@ class Columns:
     step: tuple[float, float]
     levels: tuple[list[list[list[float]]], ...]
     centers: tuple[list[float], ...]
+
+    def __repr__(self) -> str:
+        return summary(self, "low", "step")
 
 
 def columns(rules: RuleBase) -> Columns:

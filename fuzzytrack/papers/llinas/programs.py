@@ -27,6 +27,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.papers.llinas.columns import Columns
+from fuzzytrack.reprs import summary
 
 __all__ = [
     "Run",
@@ -71,6 +72,9 @@ class Run:
 
     predicted: Array
     distance: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "predicted")
 
 
 def _axes(plots: Plots, truth: Plots, number: Number) -> list[_Axis]:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, w_from_alpha_beta
 from fuzzytrack.papers.reproduction import Row, row
+from fuzzytrack.reprs import summary
 from fuzzytrack.schedulers import KalmanCV
 from fuzzytrack.simulation.published import MANEUVERS, llinas_maneuver
 from fuzzytrack.simulation.trajectories import constant_acceleration, turn_with_angular_acceleration
@@ -195,6 +196,9 @@ class ReportTracks:
     period: float
     position: Array
     weight: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "period", "position")
 
     @classmethod
     def of(cls, period: float, length: float, nodes: int = 5) -> ReportTracks:
