@@ -66,8 +66,6 @@ class TrackStore:
 
     def __init__(self, tracker: Tracker | str, n_axes: int) -> None:
         tracker = as_tracker(tracker)
-        if isinstance(tracker, type) or not isinstance(tracker, Tracker):
-            raise TypeError(f"tracker: needs a tracker, or a text that names one; got {tracker!r}")
         if operator.index(n_axes) < 1:
             raise ValueError(f"n_axes must be at least 1, got {n_axes}")
         self.tracker, self.n_axes = tracker, n_axes

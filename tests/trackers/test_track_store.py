@@ -235,7 +235,7 @@ def test_states_that_do_not_fit():
 def test_what_a_store_is_made_of():
     scheduler = FixedGains(0.5, 0.2)
     for tracker in (None, 3, scheduler, AlphaBetaTracker):
-        with pytest.raises(TypeError, match="tracker: needs a tracker, or a text that names one"):
+        with pytest.raises(TypeError, match="tracker must be a Tracker, or a text"):
             TrackStore(tracker, 1)
     for n_axes in (0, -1):
         with pytest.raises(ValueError, match=f"n_axes must be at least 1, got {n_axes}"):
