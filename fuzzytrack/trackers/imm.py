@@ -212,7 +212,7 @@ class InteractingModels(LaneTracker):
         -------
         ndarray
             Variance (m²), shaped as a plot: that of the models, and the spread between them. NaN
-            before the first plot.
+            before the first plot, and where a track coasts before its velocity is known.
 
         Raises
         ------
@@ -223,7 +223,9 @@ class InteractingModels(LaneTracker):
         rows = state.rows
         variance: Array = _variance(*_unpacked(state.lanes[rows.memory : rows.state]))
         seen = ~np.isnan(state.lanes[: rows.n_axes])
-        return np.where(seen, variance, np.nan).T.reshape(state.shape)
+        coasting, running = state.lanes[rows.gap] > 0.0, state.lanes[rows.plots] >= 2.0
+        known = seen & (running | ~coasting)
+        return np.where(known, variance, np.nan).T.reshape(state.shape)
 
     def prediction_variance(self, memory: Any, dt: Any) -> Any:
         """Variance of a predicted position; see `LaneTracker.prediction_variance`.

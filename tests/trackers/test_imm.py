@@ -270,6 +270,9 @@ def test_before_the_start():
     assert tracker.maneuver_probability(state) == pytest.approx(1 / 3)
     state = tracker.step(state, [3.0, 1.0], 1.0)
     assert tracker.position_variance(state).tolist() == [4.0, 4.0]
+    # Nothing is known of a velocity that moves the track until the second plot.
+    coasted = tracker.step(state, [np.nan, np.nan], 10.0)
+    assert np.isnan(tracker.position_variance(coasted)).all()
     assert np.isnan(state.predicted).all()
     state = tracker.step(state, [5.0, 2.0], 3.0)
     assert state.velocity.tolist() == [1.0, 0.5]
