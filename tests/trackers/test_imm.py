@@ -115,7 +115,8 @@ def textbook(tracker, times, z, sigma):
         history["acceleration"].append(np.nan_to_num(mean[2::3]))
         history["mu"].append(mu[1])
         total = np.full((order, order), np.nan)
-        if x is not None:
+        # Coasted with an unknown velocity, a position has no variance.
+        if x is not None and (seen or count == 2):
             apart = [x[j] - mean for j in (0, 1)]
             total = sum(mu[j] * (p[j] + np.outer(apart[j], apart[j])) for j in (0, 1))
         history["variance"].append(np.diag(total)[0::3])
