@@ -95,6 +95,7 @@ def call_with(
     options: Mapping[str, str],
     readers: Readers,
     given: Mapping[str, Any] | None = None,
+    others: Mapping[str, inspect.Parameter] | None = None,
 ) -> Any:
     """Call a factory with options as a user wrote them.
 
@@ -107,6 +108,8 @@ def call_with(
         See `Readers`.
     given : mapping, optional
         Further arguments, as they are.
+    others : mapping, optional
+        Parameters that a user may write beside those of the factory, for messages.
 
     Raises
     ------
@@ -123,7 +126,7 @@ def call_with(
         raise ValueError(
             f"needs {' and '.join(missing)}; write it as "
             f"{''.join(f':{key}=...' for key in missing)}; "
-            f"parameters: {', '.join(spelled(parameters))}"
+            f"parameters: {', '.join(spelled({**parameters, **(others or {})}))}"
         )
     return factory(**arguments)
 

@@ -9,6 +9,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, say
 from fuzzytrack.kernels.cache import MOST_BYTES, MOST_FILES, KernelFolder
+from fuzzytrack.plurals import counted
 
 __all__ = ["cache"]
 
@@ -49,4 +50,4 @@ def cache(
 
 
 def _amount(files: int, size: int) -> str:
-    return f"{files} {'file' if files == 1 else 'files'}, {size / 1e6:.3g} MB"
+    return f"{counted(files, 'file')}, {size / 1e6:.3g} MB"

@@ -53,7 +53,7 @@ def certify(
             }
         )
         return
-    say(f"{rules.name}: {found.verdict}")
+    say(f"{name}: {found.verdict}")
     if refuted:
         alone = all(theory.is_stable(step["alpha"], step["beta"]) for step in sequence)
         say(

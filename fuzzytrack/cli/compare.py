@@ -10,6 +10,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, show, with_error
 from fuzzytrack.cli.recording import read_recording
+from fuzzytrack.plurals import counted
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers
@@ -82,7 +83,7 @@ def print_comparison(found: Comparison) -> None:
         ["RMSE of position (m)", "predicted", "filtered", "vs first"],
         rows,
         title=(
-            f"{found.runs} runs of {found.scans.mean():.0f} scans, "
+            f"{counted(found.runs, 'run')} of {counted(found.scans.mean(), 'scan')}, "
             f"noise {found.sigma:g} m on each axis, seed {found.seed}"
         ),
     )

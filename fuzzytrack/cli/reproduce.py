@@ -91,7 +91,7 @@ def _print(found: Reproduction) -> None:
     ]
     print_table(["", "", "published", "ours", "verdict"], rows, title=found.title, words=2)
     counts = Counter(r.verdict for r in found.rows)
-    say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    say(", ".join(f"{verdict}: {count}" for verdict, count in counts.items()))
     for number, why in enumerate(reasons, 1):
         say(f"({number}) {why}")
     for note in found.notes:

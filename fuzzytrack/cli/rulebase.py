@@ -57,7 +57,8 @@ def show(name: Name, json: options.Json = False) -> None:
     if json:
         print_json(rulebase_as_json(rules))
     else:
-        print_rulebase(rules)
+        # A copy of a shipped rule base may still have its name.
+        print_rulebase(rules, name if name == rules.name else f"{name}: {rules.name}")
 
 
 @rulebase.command()
@@ -144,15 +145,21 @@ def set_(
     raw = source.read_bytes()
     before = loads_rulebase(raw, str(source))
     changed = set_cell(raw.decode("utf-8"), where, says, file=str(source))
-    target = source if output is None else Path(output)
-    with whole_file(target) as draft:
-        draft.write_bytes(changed.encode("utf-8"))
     key = frozenset(where.items())
-    for old, new in zip(before.rules, loads_rulebase(changed).rules, strict=True):
-        if frozenset(old.conditions) == key:
-            say(f"was  {old}")
-            say(f"now  {new}")
-    say(f"wrote {target}")
+    after = loads_rulebase(changed)
+    (number,) = (n for n, r in enumerate(before.rules) if frozenset(r.conditions) == key)
+    old, new = before.rules[number], after.rules[number]
+    target = source if output is None else Path(output)
+    if new != old or output is not None:
+        with whole_file(target) as draft:
+            draft.write_bytes(changed.encode("utf-8"))
+    if new == old:
+        say(f"no change: {old}")
+    else:
+        say(f"was  {old}")
+        say(f"now  {new}")
+    if new != old or output is not None:
+        say(f"wrote {target}")
 
 
 @rulebase.command()

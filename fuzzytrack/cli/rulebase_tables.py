@@ -14,9 +14,9 @@ from fuzzytrack.schedulers.review import Review
 __all__ = ["print_explanation", "print_rulebase", "review_lines"]
 
 
-def print_rulebase(rules: RuleBase) -> None:
+def print_rulebase(rules: RuleBase, heading: str) -> None:
     """Print a rule base: its variables, their sets, its rules."""
-    say(rules.name)
+    say(heading)
     for text in filter(None, (rules.description, rules.source and f"Source: {rules.source}")):
         _print_prose(text)
     say()

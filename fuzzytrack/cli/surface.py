@@ -45,7 +45,7 @@ def surface(
     if bool(others) != (at is not None):
         example = ",".join(f"{name}=..." for name in others)
         what = f"give the others a value with --at {example}" if others else "--at has no use"
-        raise ValueError(f"{system.rules.name} has {len(system.rules.inputs)} inputs; {what}")
+        raise ValueError(f"{rulebase} has {len(system.rules.inputs)} inputs; {what}")
     fixed = {} if at is None else options.numbers_at(at, others)
     if output is not None:
         check_picture(output)

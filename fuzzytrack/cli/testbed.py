@@ -23,6 +23,7 @@ from fuzzytrack.cli.output import (
 )
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.io.files import check_output
+from fuzzytrack.plurals import counted
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_source, shipped_scenarios
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -184,7 +185,7 @@ def _print(found: Results) -> None:
 def _title(found: Results) -> str:
     first = found.first_scored + 1
     return (
-        f"{found.scenario}: {found.runs} runs of {len(found.time)} scans, "
+        f"{found.scenario}: {counted(found.runs, 'run')} of {counted(len(found.time), 'scan')}, "
         f"scored from scan {first}, seed {found.seed}"
     )
 

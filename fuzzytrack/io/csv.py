@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.table import Column, Kind, Table, Values, checked_names, silent
+from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
 
 __all__ = ["CsvSource", "check", "open_source", "open_target"]
@@ -117,15 +118,11 @@ def _chunks(
         if not widths <= {width}:
             wrong = next(k for k, row in enumerate(cells) if len(row) != width)
             raise DataError(
-                f"{file}: row {rows[wrong]}: {_many(len(cells[wrong]), 'cell')}; expected {width}, "
-                "as in the header"
+                f"{file}: row {rows[wrong]}: {counted(len(cells[wrong]), 'cell')}; "
+                f"expected {width}, as in the header"
             )
         if cells:
             yield rows, list(zip(*cells, strict=True))
-
-
-def _many(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def _not_utf8(file: str) -> DataError:

@@ -133,7 +133,7 @@ class KernelFolder:
             try:
                 self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
             except OSError as error:
-                return f"{self.path}: {error.strerror or error}"
+                return f"{self.path} cannot be made: {error.strerror or error}"
         return self._untrusted(self.path)
 
     @staticmethod

@@ -11,12 +11,11 @@ import os
 import sys
 import traceback
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 
 from fuzzytrack.errors import Location, PluginError
-from fuzzytrack.reprs import summary
 
 __all__ = ["Script", "load_script", "load_scripts", "loaded_scripts", "place_in_script"]
 
@@ -34,10 +33,7 @@ class Script:
     """
 
     path: str
-    text: bytes
-
-    def __repr__(self) -> str:
-        return summary(self, "path")
+    text: bytes = field(repr=False)
 
     @property
     def module(self) -> str:

@@ -95,7 +95,7 @@ def take_scheduler(
     parameters = {k: p for k, p in specs.parameters_of(factory).items() if k not in given}
     specs.check_options(options, {**parameters, **(others or {})})
     own = {key: options.pop(key) for key in tuple(options) if key in parameters}
-    made: GainScheduler = specs.call_with(factory, own, READERS, given)
+    made: GainScheduler = specs.call_with(factory, own, READERS, given, others)
     return made
 
 

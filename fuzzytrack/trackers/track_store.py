@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_tracker
@@ -298,7 +299,8 @@ class TrackStore:
         alone = (self.n_axes,)
         if state.shape != (count, *alone) and not (count == 1 and state.shape == alone):
             raise ValueError(
-                f"state: shape {state.shape} does not fit; {count} tracks of {self.n_axes} axes "
-                f"have {(count, *alone)}"
+                f"state: shape {state.shape} does not fit; a state of "
+                f"{counted(count, 'track')} and {counted(self.n_axes, 'axis', 'axes')} has "
+                f"{(count, *alone)}"
             )
         check_rows(state, self._rows, type(self.tracker).__name__)

@@ -50,7 +50,9 @@ def test_what_is_kept_is_removed(run, folder):
 
 def test_why_nothing_is_kept_is_said(run, folder, monkeypatch):
     folder.path.write_text("a file in its place")
-    assert run("cache").stdout.splitlines()[-1] == f"usable:  no, {folder.path}: File exists"
+    assert run("cache").stdout.splitlines()[-1] == (
+        f"usable:  no, {folder.path} cannot be made: File exists"
+    )
     monkeypatch.setenv(VARIABLE, "off")
     assert run("cache").stdout.splitlines() == [
         "folder:  none",

@@ -222,8 +222,9 @@ def test_refuted_by_an_explicit_sequence(run):
 
 
 def test_refuted_by_gains_that_are_stable(run, csv):
-    text = run("certify", csv(EDGE, "edge.yaml")).stdout
-    assert text.startswith("edge: refuted\n")
+    file = csv(EDGE, "edge.yaml")
+    text = run("certify", file).stdout
+    assert text.startswith(f"{file}: refuted\n")
     assert "though each by itself is stable:" in text
     assert "1.1598 a step" in text
 

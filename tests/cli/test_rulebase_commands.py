@@ -194,6 +194,27 @@ def test_set_changes_one_cell_in_place(run, mine):
     ]
 
 
+def test_set_to_what_is_there_changes_nothing(run, mine, tmp_path):
+    before = mine.stat().st_mtime_ns
+    cell = ("--cell", "dE=ns,E=pl", "M-Z")
+    same = "no change: if E is pl and dE is ns then stiffness is M, damping is Z\n"
+    assert run("rulebase", "set", mine, *cell).stdout == same
+    assert mine.stat().st_mtime_ns == before
+    out = tmp_path / "out.yaml"
+    assert run("rulebase", "set", mine, *cell, "-o", out).stdout == f"{same}wrote {out}\n"
+    assert out.read_bytes() == mine.read_bytes()
+
+
+def test_a_copy_goes_by_its_file(run, fails, mine, csv):
+    assert load_rulebase(mine).name == "stiffness-damping"
+    assert run("certify", mine).stdout.startswith(f"{mine}: certified\n")
+    assert run("rulebase", "show", mine).stdout.startswith(f"{mine}: stiffness-damping\n")
+    assert run("rulebase", "show", "valve").stdout.startswith("valve\n")
+    assert run("rulebase", "check", mine).stdout.startswith(f"{mine}: ok\n")
+    three = csv(LIST, "a.yaml")
+    assert f"{three} has 3 inputs" in fails("surface", three)
+
+
 def test_set_elsewhere(run, fails, tmp_path):
     out = tmp_path / "out.yaml"
     cell = ("--cell", "dE=ns,E=pl", "M-L")
@@ -281,7 +302,9 @@ def test_surface_of_a_schedule_of_stiffness_has_gains(run, tmp_path):
 def test_surface_of_one_and_of_three_inputs(run, fails, csv, tmp_path):
     assert run("surface", "valve", "-o", tmp_path / "v.png", "--points", "5").exit_code == 0
     three = csv(LIST, "three.yaml")
-    assert "three has 3 inputs; give the others a value with --at c=..." in fails("surface", three)
+    assert f"{three} has 3 inputs; give the others a value with --at c=..." in fails(
+        "surface", three
+    )
     result = run("surface", three, "--at", "c=.5", "-o", tmp_path / "t.png", "--points", "5")
     assert result.exit_code == 0
     assert "did you mean" not in fails("surface", three, "--at", "d=.5")

@@ -200,12 +200,12 @@ def test_a_folder_that_cannot_be_made_is_said_once(tmp_path):
     (tmp_path / "file").write_text("")
     folder = KernelFolder(tmp_path / "file" / "kernels")
     words = (
-        f"compiled code is not kept for other processes: {folder.path}: Not a directory; set "
-        "FUZZYTRACK_CACHE_DIR to a folder of your own, or to off"
+        f"compiled code is not kept for other processes: {folder.path} cannot be made: Not a "
+        "directory; set FUZZYTRACK_CACHE_DIR to a folder of your own, or to off"
     )
     with pytest.warns(CacheWarning, match=f"^{re.escape(words)}$"):
         folder.write("a", b"code")
     # A second warning would be an error here.
     folder.write("b", b"code")
     assert folder.read("a") is None
-    assert folder.problem() == f"{folder.path}: Not a directory"
+    assert folder.problem() == f"{folder.path} cannot be made: Not a directory"

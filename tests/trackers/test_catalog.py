@@ -80,7 +80,12 @@ def test_values_follow_the_annotations():
     [
         ("", "a name is missing"),
         ("stifness-damping", "no such tracker; did you mean 'stiffness-damping'.*fixed.*yaml"),
-        ("fixed:alpha=.5", "needs beta; write it as :beta=...; parameters: alpha, beta, gamma=0.0"),
+        (
+            "fixed:alpha=.5",
+            "needs beta; write it as :beta=...; parameters: alpha, beta, gamma=0.0, "
+            "start=two-point$",
+        ),
+        ("fixed:alfa=.5", r"did you mean 'alpha'\? allowed: alpha, beta, gamma, start$"),
         ("fixed:alhpa=.5:beta=.2", "unknown parameter 'alhpa'; did you mean 'alpha'.*allowed"),
         ("fixed:alpha=a:beta=.2", "alpha must be a number, got 'a'"),
         ("fixed:alpha=1:alpha=1", "parameter 'alpha' is given twice"),

@@ -221,12 +221,14 @@ def test_states_that_do_not_fit():
         ([[1.0]], r"\(1, 1\)"),
         ([[[1.0, 2.0]]], r"\(1, 1, 2\)"),
     ):
-        with pytest.raises(ValueError, match=rf"state: shape {shape} does not fit; 1 tracks of 2"):
+        with pytest.raises(
+            ValueError, match=rf"state: shape {shape} does not fit; a state of 1 track and 2 axes"
+        ):
             store.add(FIXED.start(z, 0.0))
     with pytest.raises(ValueError, match="laid out for another tracker than AlphaBetaTracker"):
         store.add(TRACKERS["kalman-cv:sigma_v=1"].start([[1.0, 2.0]], 0.0, 1.0))
     slots = started(store, [[1.0, 2.0], [3.0, 4.0]])
-    with pytest.raises(ValueError, match="2 tracks of 2 axes have"):
+    with pytest.raises(ValueError, match="a state of 2 tracks and 2 axes has"):
         store.scatter(slots, FIXED.start([[1.0, 2.0]], 0.0))
     with pytest.raises(TypeError, match="state must be a TrackState, got TrackResult"):
         store.add(FIXED.run([0.0], [[[1.0, 2.0]]]))
