@@ -52,7 +52,13 @@ class Shipped:
         ------
         FileError
             Of the kind `failure`, if it is the name of no shipped file.
+        TypeError
+            If it is neither.
         """
+        if not isinstance(name_or_path, str | os.PathLike):
+            raise TypeError(
+                f"a {self.what} needs a name or a path, got {type(name_or_path).__name__}"
+            )
         if not isinstance(name_or_path, str) or _is_path(name_or_path):
             return Path(name_or_path)
         names = self.names()

@@ -191,6 +191,11 @@ def test_rules_by_name_in_the_theory(tmp_path):
         certify(ft.FixedGains(0.5, 0.2))
     with pytest.raises(TypeError, match=r"rules must be a RuleBase, .* got FixedGains"):
         ft.FuzzySystem(ft.FixedGains(0.5, 0.2))
+    with pytest.raises(TypeError, match=r"box must be \(\(low, .* got FixedGains"):
+        ft.plot_gain_plane(gains, ft.FixedGains(0.5, 0.2))
+    with pytest.raises(TypeError, match="a rule base needs a name or a path, got int"):
+        ft.load_rulebase(5)
+    assert review("chan-style").rules == rules
     with pytest.raises(ft.RuleBaseError, match="did you mean 'chan-style'"):
         certify("chan-stile")
 

@@ -142,7 +142,13 @@ def _outline(box: shared.Rules | Box) -> dict[str, Array]:
     else:
         outputs, label = find_gain_outputs(STIFFNESS_AND_DAMPING), "limits of stiffness and damping"
         assert outputs is not None
-        limits = np.asarray(box, dtype=np.float64)
+        try:
+            limits = np.asarray(box, dtype=np.float64)
+        except TypeError as error:
+            raise TypeError(
+                "box must be ((low, high), (low, high)), a RuleBase, a FuzzySystem, or a name or "
+                f"path of a rule base, got {type(box).__name__}"
+            ) from error
         if limits.shape != (2, 2) or not (limits[:, 0] <= limits[:, 1]).all() or limits.min() < 0:
             raise ValueError(
                 "box: must be ((low, high), (low, high)) of stiffness and damping, not negative, "

@@ -109,12 +109,14 @@ def reachable_gains(rules: RuleBase | str | os.PathLike[str], reach: str = "univ
     return _gains(as_rulebase(rules), reach)[0]
 
 
-def sequence_steps(rules: RuleBase, found: Certificate) -> list[dict[str, float]]:
+def sequence_steps(
+    rules: RuleBase | str | os.PathLike[str], found: Certificate
+) -> list[dict[str, float]]:
     """Steps of a sequence of gains that makes the error grow.
 
     Parameters
     ----------
-    rules : RuleBase
+    rules : RuleBase, str or path
         The rule base that was certified.
     found : Certificate
 
@@ -125,7 +127,7 @@ def sequence_steps(rules: RuleBase, found: Certificate) -> list[dict[str, float]
         stiffness and the gains one that is positive; and ``modulus``, that of the largest pole.
         Empty unless refuted.
     """
-    w_domain = "stiffness" in rules.output_names
+    w_domain = "stiffness" in as_rulebase(rules).output_names
     return [_step(float(alpha), float(beta), w_domain) for alpha, beta in found.sequence]
 
 

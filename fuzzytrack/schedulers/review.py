@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.as_json import rule_as_json
+from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.reprs import summary
@@ -124,14 +126,20 @@ def grid_table(system: FuzzySystem, points: int, at: Mapping[str, float]) -> dic
     return inputs | outputs | gains_of(outputs)
 
 
-def review(rules: RuleBase) -> Review:
+def review(rules: RuleBase | str | os.PathLike[str]) -> Review:
     """Review a rule base.
+
+    Parameters
+    ----------
+    rules : RuleBase, str or path
+        A rule base, itself or as for `fuzzytrack.load_rulebase`.
 
     Raises
     ------
     RuleBaseError, ValueError
-        If it has scheduler settings, but cannot schedule gains.
+        If there is no such rule base, or it has scheduler settings, but cannot schedule gains.
     """
+    rules = as_rulebase(rules)
     settings = dict(rules.scheduler)
     if settings:
         FuzzyScheduler(rules)
