@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 __all__ = [
     "CacheWarning",
@@ -15,6 +17,7 @@ __all__ = [
     "RuleBaseError",
     "ScenarioError",
     "Word",
+    "in_one_sentence",
 ]
 
 
@@ -28,6 +31,12 @@ class Location:
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"
+
+    @classmethod
+    def of_function(cls, function: Callable[..., Any]) -> Location | None:
+        """Place of the definition of a function or method; None for what has no source."""
+        code = getattr(function, "__code__", None)
+        return None if code is None else cls(code.co_filename, code.co_firstlineno, 1)
 
 
 class Word(str):
@@ -79,7 +88,7 @@ class ScenarioError(FileError):
 
 
 class PluginError(FileError):
-    """A script of plug-ins that cannot be loaded."""
+    """A script of plug-ins that cannot be loaded, or a plug-in that cannot be used."""
 
 
 class DataError(ValueError):
@@ -96,3 +105,11 @@ class PluginWarning(UserWarning):
 
 class CacheWarning(UserWarning):
     """Compiled code could not be kept on disk, so that every process compiles it again."""
+
+
+def in_one_sentence(error: BaseException) -> str:
+    """Type and message of an error; of a message of many lines, the first one that says why."""
+    lines = [line for line in str(error).splitlines() if line.strip()]
+    # Numba begins with the stage of the compiler, once for each function around the mistake.
+    reasons = [line for line in lines if not line.startswith("Failed in nopython mode pipeline")]
+    return ": ".join([type(error).__name__, *reasons[:1]])

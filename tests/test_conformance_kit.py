@@ -2,6 +2,7 @@
 
 import math
 import random
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from fuzzytrack.errors import PluginError
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import GainScheduler, KalmanCV, schedulers
 from fuzzytrack.testing import check_scheduler, check_tracker, checks_for, parametrize_with_checks
@@ -56,6 +58,14 @@ def four_answers(innovation, change, dt, sigma, memory):
     return 0.5, 0.2, 0.0, 1.0
 
 
+def bare_memory(innovation, change, dt, sigma, memory):
+    return 0.5, 0.2, 0.0, 1.0, memory[0] + 1.0
+
+
+def no_answer(innovation, change, dt, sigma, memory):
+    pass
+
+
 def grows_to_infinity(innovation, change, dt, sigma, memory):
     return 0.5, 0.2 + 1e300 * abs(innovation) * 1e300, 0.0, 1.0, memory
 
@@ -94,11 +104,12 @@ def test_a_scheduler_is_a_value(scheduler, promise):
 @pytest.mark.parametrize(
     ("kernel", "memory", "promise"),
     [
-        (forgets_one, (0.0,), "memory must keep its length 1, got 0"),
-        (four_answers, (), "must return alpha, beta, gamma, phi, memory"),
-        (lambda *words: None, (), "must return alpha, beta, gamma, phi, memory"),
-        (lambda *words: [0.5, 0.2, 0.0, 1.0, ()], (), "must return alpha, beta, gamma, phi"),
-        (lambda *words: (0.5, 0.2, 0.0, 1.0, []), (), "and the memory as a tuple"),
+        (forgets_one, (0.0,), "must return a memory of length 1 as it gets, got length 0"),
+        (bare_memory, (0.0,), "must return its memory as a tuple, got 1.0"),
+        (four_answers, (), r"must return \(alpha, beta, gamma, phi, memory\), got \(0.5, 0.2, 0.0"),
+        (no_answer, (), r"must return \(alpha, beta, gamma, phi, memory\), got None"),
+        (lambda *words: [0.5, 0.2, 0.0, 1.0, ()], (), r"must return \(alpha, .*\), got \[0.5, 0"),
+        (lambda *words: (0.5, 0.2, 0.0, 1.0, []), (), r"its memory as a tuple, got \[\]"),
         (grows_to_infinity, (), "gains and memory must be finite floats"),
         (gambles, (), "must depend on nothing else"),
         (divides, (), r"innovation 0, change 0: raises ZeroDivisionError .* guard its own divis"),
@@ -134,13 +145,26 @@ class WithMethod(GainScheduler):
 
 def test_a_kernel_has_five_arguments():
     expected = (
-        r"^kernel-takes-five-arguments: the kernel must take the five arguments \(innovation, "
-        r"change, dt, sigma, memory\), takes \(innovation, dt, memory\)$"
+        r"^kernel-takes-five-arguments: the kernel of Made must take the five arguments "
+        r"\(innovation, change, dt, sigma, memory\), takes \(innovation, dt, memory\)$"
     )
     with pytest.raises(AssertionError, match=expected):
         run_check("kernel-takes-five-arguments", scheduler_of(of_three))
     with pytest.raises(AssertionError, match="must return a plain function, got method: define"):
         run_check("kernel-takes-five-arguments", WithMethod())
+    with pytest.raises(AssertionError, match=r"Made\.kernel must return a function, got None$"):
+        run_check("kernel-takes-five-arguments", scheduler_of(None))
+
+
+@pytest.mark.parametrize("memory", [0.0, None, ("word",)])
+@pytest.mark.parametrize(
+    "name", ["kernel-answers-in-form", "gains-are-stable", "inputs-left-alone"]
+)
+def test_the_first_memory_is_a_tuple(memory, name):
+    expected = f"{name}: Made.initial_memory must return a tuple of numbers, got {memory!r}"
+    with pytest.raises(AssertionError, match=f"^{re.escape(expected)}$") as caught:
+        run_check(name, scheduler_of(fixed, memory))
+    assert isinstance(caught.value.__cause__, PluginError)
 
     def of_one_more(innovation, change, dt, sigma, memory, *, alpha=0.5):
         return alpha, 0.2, 0.0, 1.0, memory
@@ -365,9 +389,71 @@ def test_any_other_error_says_in_which_check():
     def raises(result, t, z):
         raise KeyError("z")
 
-    with pytest.raises(KeyError) as caught:
+    with pytest.raises(
+        AssertionError, match=r"^inputs-left-alone: Faulty raises KeyError: 'z'$"
+    ) as caught:
         run_check("inputs-left-alone", Faulty(run=raises))
-    assert caught.value.__notes__ == ["in the check inputs-left-alone of Faulty"]
+    assert isinstance(caught.value.__cause__, KeyError)
+
+
+def test_an_error_of_the_compiler_is_one_sentence():
+    def mixed(innovation, change, dt, sigma, memory):
+        return (0.5 if abs(innovation) < 1e12 else "half"), 0.2, 0.0, 1.0, memory
+
+    with pytest.raises(AssertionError) as caught:
+        run_check("compiled-equals-plain", scheduler_of(mixed))
+    assert re.match(
+        r"compiled-equals-plain: Made raises TypingError: \S.*float64.*$", str(caught.value)
+    )
+
+
+@dataclass(frozen=True)
+class Corrected(LaneTracker):
+    """A tracker with fixed gains whose `correct` is replaced."""
+
+    kind: str
+
+    def program(self, n_axes):
+        rows = Rows(n_axes, 0)
+
+        def four_answers(b, lane, z, prediction, velocity, dt, gap, sigma, update, starts):
+            return prediction, prediction, 0.5, 0.1
+
+        def nine_arguments(b, lane, z, prediction, velocity, dt, gap, sigma, update):
+            return prediction, prediction, velocity, 0.5, 0.1
+
+        def divides(b, lane, z, prediction, velocity, dt, gap, sigma, update, starts):
+            return prediction, prediction, velocity, 0.5 / (0.0 * gap), 0.1
+
+        correct = locals()[self.kind]
+        return LaneProgram(rows, (), lambda stride: single_axis_step(rows, stride, correct))
+
+
+@pytest.mark.parametrize(
+    ("kind", "error"),
+    [
+        ("four_answers", r"not enough values to unpack \(expected 5, got 4\)"),
+        ("nine_arguments", "takes 9 positional arguments but 10 were given"),
+    ],
+)
+def test_what_correct_takes_and_returns(kind, error):
+    expected = (
+        r"Corrected: correct must take \(buffer, lane, z, .*, update, starts\) and return "
+        rf"\(prediction, position, velocity, alpha, beta\); .*{error}$"
+    )
+    with pytest.raises(AssertionError, match=f"^results-have-shape-of-plots: {expected}"):
+        check_tracker(Corrected(kind))
+    with pytest.raises(PluginError, match=expected) as caught:
+        Corrected(kind).start(0.0, 0.0)
+    assert caught.value.location.file == __file__
+
+
+def test_an_error_inside_of_correct_is_its_own():
+    with pytest.raises(AssertionError, match="Corrected raises ZeroDivisionError: float division"):
+        check_tracker(Corrected("divides"))
+    with pytest.raises(ZeroDivisionError) as caught:
+        Corrected("divides").run([0.0, 1.0], [0.0, 1.0])
+    assert caught.value.__notes__ == ["in a step of Corrected"]
 
 
 # -------------------------------------------------------------------- trackers

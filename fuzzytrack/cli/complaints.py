@@ -11,8 +11,14 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from fuzzytrack.errors import CacheWarning, FileError, NoRuleFiresWarning, PluginWarning
-from fuzzytrack.plugins.scripts import place_in_script
+from fuzzytrack.errors import (
+    CacheWarning,
+    FileError,
+    NoRuleFiresWarning,
+    PluginWarning,
+    in_one_sentence,
+)
+from fuzzytrack.plugins.scripts import loaded_scripts, place_in_script
 
 __all__ = ["Command", "Commands", "one_line"]
 
@@ -78,13 +84,22 @@ def _with_options(message: str, parameters: Iterable[Any]) -> str:
 
 def _line(error: Exception) -> str | None:
     """Error as one line; None if it is a mistake in this package, which needs the traceback."""
-    place = place_in_script(error)
-    if place is not None:
-        return _printable(f"{place}: {type(error).__name__}: {error}")
-    if isinstance(error, OSError | ValueError):
-        return one_line(error)
     # Wrong usage; the module of its class depends on the version of typer.
-    return _usage(error) if hasattr(error, "format_message") else None
+    if hasattr(error, "format_message"):
+        return _usage(error)
+    if isinstance(error, FileError) and error.location:
+        return one_line(error)
+    scripts = ", ".join(script.path for script in loaded_scripts())
+    place = place_in_script(error)
+    # A note names the tracker whose step has raised the error: that is not about an argument.
+    notes = getattr(error, "__notes__", ())
+    if place is None and isinstance(error, OSError | ValueError) and not (scripts and notes):
+        return one_line(error)
+    if not scripts:
+        return None
+    line = ", ".join([f"{place or scripts}: {in_one_sentence(error)}", *notes])
+    more = "; fuzzytrack.testing.check_scheduler or check_tracker says more" if notes else ""
+    return _printable(line + more)
 
 
 def one_line(error: Exception) -> str:

@@ -20,8 +20,13 @@ from typing import Any
 from fuzzytrack.lanes.layout import Rows
 
 __all__ = [
-    "axis_end", "axis_results", "begin_step", "lane_end", "single_axis_step", "velocity_before",
+    "CORRECT_RETURNS", "CORRECT_TAKES", "axis_end", "axis_results", "begin_step", "lane_end",
+    "single_axis_step", "velocity_before",
 ]  # fmt: skip
+
+#: What `single_axis_step` calls a tracker's own arithmetic with, and what it needs of it.
+CORRECT_TAKES = "(buffer, lane, z, prediction, velocity, dt, gap, sigma, update, starts)"
+CORRECT_RETURNS = "(prediction, position, velocity, alpha, beta)"
 
 
 def begin_step(plots: float, gap: float, dt: float, seen: bool) -> tuple[float, float, bool, bool]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from fuzzytrack.errors import PluginError, in_one_sentence
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.testing.samples import expect
 from fuzzytrack.testing.scheduler_checks import SCHEDULER_CHECKS
@@ -47,15 +48,18 @@ class Check:
         Raises
         ------
         AssertionError
-            If it is broken; begins with the name of the check.
+            If it is broken, or anything else is raised; begins with the name of the check.
         """
         try:
             self.promise(self.subject, self.seed)
         except AssertionError as error:
             raise AssertionError(f"{self.name}: {error}") from error
+        except PluginError as error:
+            raise AssertionError(f"{self.name}: {error.message}") from error
         except Exception as error:
-            error.add_note(f"in the check {self.name} of {type(self.subject).__name__}")
-            raise
+            raise AssertionError(
+                f"{self.name}: {type(self.subject).__name__} raises {in_one_sentence(error)}"
+            ) from error
 
 
 def checks_for(subject: GainScheduler | Tracker, seed: int = 0) -> Iterator[Check]:

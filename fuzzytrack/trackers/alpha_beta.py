@@ -11,6 +11,7 @@ from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.schedulers.catalog import as_scheduler
+from fuzzytrack.schedulers.form import check_answer, checked_kernel, checked_memory
 from fuzzytrack.trackers.alpha_beta_step import steady_function, step_function
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -95,7 +96,8 @@ class AlphaBetaTracker(LaneTracker):
     def program(self, n_axes: int) -> LaneProgram:
         """The α-β-γ recursion with the scheduler's gains; see `LaneTracker.program`."""
         scheduler, two_point = self.scheduler, self.start_mode == "two-point"
-        memory = tuple(float(m) for m in scheduler.initial_memory(n_axes))
+        checked_kernel(scheduler, n_axes)
+        memory = checked_memory(scheduler, n_axes)
         rows = Rows(n_axes, len(memory))
         return LaneProgram(
             rows,
@@ -103,6 +105,10 @@ class AlphaBetaTracker(LaneTracker):
             lambda stride: step_function(scheduler, rows, two_point, stride),
             lambda stride, results: steady_function(scheduler, rows, stride, results),
         )
+
+    def _check_form(self, n_axes: int) -> None:
+        """Raise PluginError if what the scheduler's kernel returns lacks the form."""
+        check_answer(self.scheduler, n_axes)
 
     def prediction_variance(self, memory: Any, dt: Any) -> Any:
         """Variance of a predicted position; see `LaneTracker.prediction_variance`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.errors import Location, PluginError
 from fuzzytrack.lanes.layout import GAINS, Rows
 from fuzzytrack.lanes.plots import (
     PlotLayout,
@@ -25,6 +27,7 @@ from fuzzytrack.lanes.plots import (
 )  # fmt: skip
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.runner import InfinitePlotError, Runner
+from fuzzytrack.lanes.start import CORRECT_RETURNS, CORRECT_TAKES, single_axis_step
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.trackers.compiled_step import CompiledStep
 from fuzzytrack.trackers.prediction import Prediction
@@ -145,6 +148,9 @@ class LaneTracker(ABC):
             )
         except InfinitePlotError:
             raise infinite_plot(plots) from None
+        except Exception as error:
+            self._explain(error, layout.lane_axes)
+            raise
         outputs: dict[str, Any] = {name: layout.from_lanes(raw[name]) for name in raw}
         if "gains" in wanted:
             outputs["gains"] = Gains(*(outputs.pop(name) for name in GAINS))
@@ -308,16 +314,42 @@ class LaneTracker(ABC):
         sigmas = layout.to_lanes(self._sigmas(deviation, plots))
         shape = (layout.lanes, layout.lane_axes)
         lanes = core.fresh(layout.lanes) if state is None else state.lanes
-        if core.native:
-            after, _ = core(lanes, plots.reshape(1, *shape), dts, sigmas, True, (), 1)
-        else:
-            after = core.step(
-                lanes,
-                plots.reshape(shape),
-                dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
-                np.broadcast_to(sigmas[0], shape).tolist(),
-            )
+        try:
+            if core.native:
+                after, _ = core(lanes, plots.reshape(1, *shape), dts, sigmas, True, (), 1)
+            else:
+                after = core.step(
+                    lanes,
+                    plots.reshape(shape),
+                    dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
+                    np.broadcast_to(sigmas[0], shape).tolist(),
+                )
+        except Exception as error:
+            self._explain(error, layout.lane_axes)
+            raise
         return TrackState(times[0].copy(), plots.shape[1:], after, core.rows)
+
+    def _explain(self, error: Exception, n_axes: int) -> None:
+        """Name the tracker in an error of its step; PluginError if its functions lack the form."""
+        self._check_form(n_axes)
+        error.add_note(f"in a step of {self.name}")
+
+    def _check_form(self, n_axes: int) -> None:
+        """Raise PluginError if the tracker's part of `single_axis_step` lacks the form for it.
+
+        Called when a step has failed: it is no work for trackers without a mistake.
+        """
+        core = Runner(self.program(n_axes))
+        try:
+            core.step(core.fresh(1), np.zeros((1, n_axes)), [1.0], [[1.0] * n_axes])
+        except Exception as error:
+            raised_in = traceback.extract_tb(error.__traceback__)[-1].filename
+            if raised_in == single_axis_step.__code__.co_filename:
+                raise PluginError(
+                    f"{self.name}: correct must take {CORRECT_TAKES} and return "
+                    f"{CORRECT_RETURNS}; {error}",
+                    Location.of_function(self.program),
+                ) from error
 
     def _position_variance(self, state: TrackState, time: Array | np.float64) -> Array:
         """Variance of the position predicted for a later time, shaped as a plot."""

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from fuzzytrack.fuzzy.loading import rulebase_path
+from fuzzytrack.lanes import runner
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.plugins import scripts
 from fuzzytrack.schedulers import schedulers
@@ -88,8 +90,6 @@ def test_compare_and_trackers(run, plots, script, csv):
 
 
 def test_a_rule_base_on_a_normalization_of_a_script(run, fails, csv, script):
-    from fuzzytrack.fuzzy.loading import rulebase_path
-
     text = rulebase_path("stiffness-damping").read_text()
     rules = csv(text.replace("normalization: chan", "normalization: scripted"), "mine.yaml")
     assert run("rulebase", "check", rules, "--plugin", script).exit_code == 0
@@ -154,6 +154,113 @@ def test_a_mistake_in_a_script_is_one_line(fails, csv, words):
     assert fails(*words, "--plugin", path) == (
         f"{path}:3:1: AttributeError: module 'math' has no attribute 'no_such_function'"
     )
+
+
+MISTAKEN = """
+from dataclasses import dataclass
+
+from fuzzytrack.schedulers import GainScheduler, schedulers
+
+
+@schedulers.register("scripted")
+@dataclass(frozen=True)
+class Mistaken(GainScheduler):
+    def initial_memory(self, n_axes):
+        return (0.0,)
+
+    def kernel(self, n_axes):
+        def kernel(innovation, change, dt, sigma, memory):
+            alpha = 0.5
+            return alpha, 0.2, 0.0, 1.0, memory
+
+        return kernel
+"""
+MORE = "; fuzzytrack.testing.check_scheduler or check_tracker says more"
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "told"),
+    [
+        ("return (0.0,)", "return 0.0",
+         ":10:1: Mistaken.initial_memory must return a tuple of numbers, got 0.0"),
+        ("change, ", "",
+         ":14:1: the kernel of Mistaken must take the five arguments "
+         "(innovation, change, dt, sigma, memory), takes (innovation, dt, sigma, memory)"),
+        ("0.2, 0.0, 1.0, memory", "0.2",
+         ":14:1: the kernel of Mistaken must return (alpha, beta, gamma, phi, memory), "
+         "got (0.5, 0.2)"),
+        ("0.5", "0.5 / (innovation * 0.0)",
+         ":15:21: ZeroDivisionError: float division by zero, in a step of Mistaken" + MORE),
+        ("0.5", "max(-1.0) + abs(innovation)",
+         ":15:21: TypeError: 'float' object is not iterable, in a step of Mistaken" + MORE),
+        # A ValueError, too: the place tells it from a bad argument of the command.
+        ("0.5", "float('half')",
+         ":15:21: ValueError: could not convert string to float: 'half', in a step of Mistaken"
+         + MORE),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_a_kernel_is_one_line(fails, plots, script, right, wrong, told):
+    assert MISTAKEN.count(right) == 1
+    script.write_text(MISTAKEN.replace(right, wrong))
+    line = fails("track", plots, "--plugin", script, "--tracker", "scripted")
+    assert line == f"{script}{told}"
+
+
+def test_a_mistake_that_the_compiler_finds_is_one_line(fails, plots, script, monkeypatch):
+    monkeypatch.setattr(runner, "COMPILE_ABOVE", 1)
+    script.write_text(MISTAKEN.replace("0.5", "0.5 if innovation < 1e9 else 'half'"))
+    line = fails("track", plots, "--plugin", script, "--tracker", "scripted")
+    assert line.startswith(f"{script}: TypingError: ")
+    assert line.endswith(f", in a step of Mistaken{MORE}")
+
+
+def test_a_mistake_of_form_is_one_sentence_when_compiled(fails, plots, script, monkeypatch):
+    monkeypatch.setattr(runner, "COMPILE_ABOVE", 1)
+    script.write_text(MISTAKEN.replace("0.2, 0.0, 1.0, memory", "0.2"))
+    line = fails("track", plots, "--plugin", script, "--tracker", "scripted")
+    assert line.startswith(f"{script}:14:1: the kernel of Mistaken must return (alpha, beta,")
+
+
+def test_a_mistake_in_another_process_is_one_line(fails, script):
+    script.write_text(MISTAKEN.replace("0.5", "0.5 / (innovation * 0.0)"))
+    words = ("testbed", "constant-velocity", "--runs", 130, "--jobs", 2, "--trackers", "scripted")
+    line = fails(*words, "--plugin", script)
+    assert (
+        line == f"{script}: ZeroDivisionError: float division by zero, in a step of Mistaken{MORE}"
+    )
+
+
+def test_a_mistake_in_a_normalization_is_one_line(fails, plots, csv, script):
+    text = rulebase_path("stiffness-damping").read_text()
+    rules = csv(text.replace("normalization: chan", "normalization: scripted"), "mine.yaml")
+    script.write_text(SCRIPT.replace("innovation)), 0.0), memory", "innovation)), 0.0)"))
+    line = fails("track", plots, "--plugin", script, "--tracker", rules)
+    assert line.startswith((f"{script}: TypeError: ", f"{script}: ValueError: "))
+    assert line.endswith(f", in a step of FuzzyScheduler{MORE}")
+
+
+def test_a_bad_file_beside_a_script_keeps_its_message(fails, csv, script):
+    bad = csv("t,x\n0,0\n1,word\n", "bad.csv")
+    without = fails("track", bad)
+    assert fails("track", bad, "--plugin", script, "--tracker", "scripted") == without
+
+
+def test_a_bad_parameter_of_a_class_of_a_script_keeps_its_message(fails, plots, script):
+    check = "    def __post_init__(self):\n        raise ValueError('alpha: too small')\n\n    def "
+    script.write_text(MISTAKEN.replace("    def ", check, 1))
+    line = fails("track", plots, "--plugin", script, "--tracker", "scripted")
+    assert line.startswith("error: ")
+    assert line.endswith("alpha: too small")
+
+
+def test_a_mistake_of_the_package_is_not_hidden(run, plots, monkeypatch):
+    monkeypatch.setattr(scripts, "_loaded", {})
+
+    def broken(*words, **extra):
+        raise KeyError("ours")
+
+    monkeypatch.setattr(runner.Runner, "__call__", broken)
+    assert isinstance(run("track", plots).exception, KeyError)
 
 
 def test_a_script_that_is_not_there(fails, plots, tmp_path):
