@@ -40,7 +40,14 @@ def test_a_job_apart_is_the_same(plots, tmp_path):
 
 
 def test_messages_name_arguments(plots, tmp_path):
-    with pytest.raises(ValueError, match=r"^tracker: object cannot go on from piece to piece"):
+    class Whole:
+        def run(self): ...
+
+        start = step = predict = run
+
+    with pytest.raises(ValueError, match=r"^tracker: Whole cannot go on from piece to piece"):
+        LargeJob.of(plots, Whole())
+    with pytest.raises(TypeError, match=r"^tracker must be a Tracker, .* got object$"):
         LargeJob.of(plots, object())
     with pytest.raises(DataError, match=r"plots\.csv: `axes`: no column 'q'"):
         LargeJob.of(plots, FIXED, axes=["q"])
