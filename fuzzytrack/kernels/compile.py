@@ -11,12 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from fuzzytrack.kernels.rebuild import fingerprint, rebuilt, rounded, table
+from fuzzytrack.kernels.rebuild import LONG_TUPLE, fingerprint, rebuilt, rounded, table
 
 __all__ = ["compiled", "entry_point"]
-
-#: Longer tuples become arrays, which compiled code reads faster.
-_LONG_TUPLE = 16
 
 
 def compiled(function: Callable[..., Any], *, nogil: bool = False) -> Callable[..., Any]:
@@ -75,16 +72,10 @@ def entry_point(function: Callable[..., Any], arguments: str, dtype: type = np.f
     ValueError
         If a number in the source is too large or too small for `dtype`.
     """
-    import numba
-
     from fuzzytrack.kernels.llvm import c_function
 
-    types: Any = numba.types
-    number = numba.from_dtype(np.dtype(dtype))
-    kinds = {"v": types.void, "i": types.intp, "x": number, "p": types.CPointer(number)}
-    result, *given = (kinds[letter] for letter in arguments)
     content = _Content.of(function, dtype)
-    return c_function(_prepared_copy(content), tuple(given), result, content.digest)
+    return c_function(_prepared_copy(content), arguments, dtype, content.digest)
 
 
 @dataclass(frozen=True)
@@ -133,7 +124,7 @@ def _prepared(value: Any, dtype: type) -> Any:
 
     if isinstance(value, FunctionType):
         return word_for_compiler(value, dtype) or _helper(_Content.of(value, dtype))
-    if isinstance(value, tuple) and len(value) > _LONG_TUPLE:
+    if isinstance(value, tuple) and len(value) > LONG_TUPLE:
         return table(value, dtype)
     if dtype is np.float64:
         return value

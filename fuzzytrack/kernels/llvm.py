@@ -95,19 +95,22 @@ def keep_on_disk(compiled: Any, digest: str | None) -> None:
 
 
 def c_function(
-    function: Callable[..., Any], arguments: tuple[Any, ...], result: Any, digest: str | None
+    function: Callable[..., Any], arguments: str, dtype: type, digest: str | None
 ) -> Any:
     """Compile a function for calls by its address.
 
     Parameters
     ----------
     function : callable
-    arguments : tuple of Numba types
-    result : Numba type
+    arguments, dtype
+        See `fuzzytrack.kernels.compile.entry_point`.
     digest : str or None
         See `keep_on_disk`.
     """
-    made: Any = CFunc(function, (arguments, result), {}, {"error_model": "numpy"})
+    number = numba.from_dtype(np.dtype(dtype))
+    kinds = {"v": types.void, "i": types.intp, "x": number, "p": types.CPointer(number)}
+    result, *given = (kinds[letter] for letter in arguments)
+    made: Any = CFunc(function, (tuple(given), result), {}, {"error_model": "numpy"})
     keep_on_disk(made, digest)
     made.compile()
     return made

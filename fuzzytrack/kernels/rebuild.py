@@ -16,7 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["fingerprint", "rebuilt", "rounded", "table"]
+__all__ = ["LONG_TUPLE", "fingerprint", "rebuilt", "rounded", "table"]
+
+#: Longer tuples become arrays, which compiled code reads faster.
+LONG_TUPLE = 16
 
 #: Packages whose version is known wherever a fingerprint is used: the name of what is in them is
 #: enough. What is in any other module may be changed without a change of its name.
@@ -95,12 +98,15 @@ def _not_in(dtype: type, value: float) -> ValueError:
     )
 
 
-def fingerprint(function: Callable[..., Any]) -> str | None:
+def fingerprint(function: Callable[..., Any], *, numbers: bool = True) -> str | None:
     """Digest of a plain Python function and of all that it refers to.
 
     Parameters
     ----------
     function : callable
+    numbers : bool
+        Whether the values of floats count that `rebuilt` gives to its argument `replace`, by
+        themselves or in a tuple of up to `LONG_TUPLE` values. Those of others always count.
 
     Returns
     -------
@@ -111,13 +117,13 @@ def fingerprint(function: Callable[..., Any]) -> str | None:
     """
     digest = hashlib.sha256()
     try:
-        _add(digest, function, {})
+        _add(digest, function, {}, numbers)
     except _UnknownContentError:
         return None
     return digest.hexdigest()
 
 
-def _add(digest: Any, value: Any, seen: dict[int, int]) -> None:
+def _add(digest: Any, value: Any, seen: dict[int, int], numbers: bool) -> None:
     """Add the content of a value, and of what it refers to, to a digest.
 
     A function that was met before is added by its number in `seen`, since functions may refer to
@@ -137,18 +143,25 @@ def _add(digest: Any, value: Any, seen: dict[int, int]) -> None:
         seen[id(value)] = len(seen)
         scope = {n: value.__globals__[n] for n in _names(value.__code__) & set(value.__globals__)}
         cells = tuple(cell.cell_contents for cell in value.__closure__ or ())
-        for part in (value.__code__, value.__defaults__, cells, *sorted(scope.items())):
-            _add(digest, part, seen)
+        take("cells", str(len(cells)).encode())
+        for part in (value.__code__, *cells, *sorted(scope.items())):
+            _add(digest, part, seen, numbers)
+        _add(digest, value.__defaults__, seen, True)
     elif isinstance(value, CodeType):
         take("code", value.co_code + value.co_exceptiontable)
-        for part in (value.co_names, value.co_varnames, value.co_freevars, value.co_consts):
-            _add(digest, part, seen)
+        for part in (value.co_names, value.co_varnames, value.co_freevars):
+            _add(digest, part, seen, numbers)
+        take("constants", str(len(value.co_consts)).encode())
+        for part in value.co_consts:
+            _add(digest, part, seen, numbers or isinstance(part, CodeType))
     elif type(value) is tuple:
         take("tuple", str(len(value)).encode())
         for item in value:
-            _add(digest, item, seen)
+            _add(digest, item, seen, numbers or len(value) > LONG_TUPLE)
     elif isinstance(value, np.ndarray) and not value.dtype.hasobject:
         take(f"array {value.dtype.str} {value.shape}", value.tobytes())
+    elif type(value) is float and not numbers:
+        take("number", b"")
     elif type(value) in (NoneType, bool, int, float, str, bytes):
         take(type(value).__name__, repr(value).encode())
     elif _home(value) in _KNOWN_BY_NAME:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -28,6 +29,10 @@ COMPILE_ABOVE = 200_000
 THREADS_ABOVE = 500_000
 #: Parts of a job for each thread: more than one, since parts do not take equally long.
 PARTS = 4
+
+
+#: Compiles a function, as `fuzzytrack.kernels.compile.entry_point` does.
+Compiler = Callable[[Callable[..., Any], str, type], Any]
 
 
 class InfinitePlotError(ValueError):
@@ -58,6 +63,7 @@ class Runner:
     common_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
     own_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
     _code: dict[tuple[object, type], Any] = field(default_factory=dict, init=False, repr=False)
+    _compiler: Compiler = field(default_factory=lambda: entry_point, init=False, repr=False)
 
     def __repr__(self) -> str:
         return summary(self, "program", "work", "horizon")
@@ -273,8 +279,24 @@ class Runner:
     ) -> Any:
         if key not in self._code:
             # Two threads may compile at the same time; both must use the code that is kept.
-            self._code.setdefault(key, entry_point(make(), arguments, key[1]))
+            self._code.setdefault(key, self._compiler(make(), arguments, key[1]))
         return self._code[key]
+
+    @contextmanager
+    def compiled_by(self, compiler: Compiler) -> Iterator[None]:
+        """Run jobs of any size through the code of another compiler, which is dropped at the end.
+
+        Parameters
+        ----------
+        compiler : callable
+            See `Compiler`. Its code need not be of use any longer than that.
+        """
+        before = self._code, self.horizon, self._compiler
+        self._code, self.horizon, self._compiler = {}, COMPILE_ABOVE + 1, compiler
+        try:
+            yield
+        finally:
+            self._code, self.horizon, self._compiler = before
 
 
 def _threads(wanted: int | None, coordinates: int) -> int:

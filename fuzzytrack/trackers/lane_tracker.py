@@ -5,7 +5,8 @@ from __future__ import annotations
 import operator
 import traceback
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -15,7 +16,8 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import Location, PluginError
-from fuzzytrack.lanes.layout import GAINS, Rows
+from fuzzytrack.kernels.shared_code import SharedCode
+from fuzzytrack.lanes.layout import BLOCK, GAINS, Rows
 from fuzzytrack.lanes.plots import (
     PlotLayout,
     as_plots,
@@ -34,7 +36,7 @@ from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult, checked_keep
 from fuzzytrack.trackers.state import Gains, TrackState, check_rows
 
-__all__ = ["LaneTracker", "announce", "runner"]
+__all__ = ["LaneTracker", "announce", "learn_code", "runner", "sharing_code"]
 
 
 class LaneTracker(ABC):
@@ -406,6 +408,35 @@ def announce(tracker: object, n_axes: int, coordinates: int) -> None:
     if isinstance(tracker, LaneTracker):
         core = runner(tracker, n_axes if tracker.coupled else 1)
         core.horizon = max(core.horizon, core.work + coordinates)
+
+
+def learn_code(tracker: object, n_axes: int, code: SharedCode) -> None:
+    """Note the numbers of a tracker, before `sharing_code` compiles; arguments as there."""
+    if isinstance(tracker, LaneTracker):
+        program = runner(tracker, n_axes if tracker.coupled else 1).program
+        code.learn(program.step(BLOCK))
+        if program.steady is not None:
+            code.learn(program.steady(BLOCK, False))
+
+
+@contextmanager
+def sharing_code(tracker: object, n_axes: int, code: SharedCode) -> Iterator[None]:
+    """Let a tracker run through code that it shares with trackers which differ in numbers only.
+
+    Parameters
+    ----------
+    tracker : object
+        A tracker; nothing is done unless it is a `LaneTracker`. It must not run elsewhere at the
+        same time.
+    n_axes : int
+        Axes of the plots.
+    code : SharedCode
+    """
+    if not isinstance(tracker, LaneTracker):
+        yield
+        return
+    with runner(tracker, n_axes if tracker.coupled else 1).compiled_by(code.entry_point):
+        yield
 
 
 @lru_cache(maxsize=256)
