@@ -18,7 +18,19 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import positive
 from fuzzytrack.reprs import summary
 
-__all__ = ["WHITE", "Noise", "Plots", "check_runs", "noisy_plots", "streams", "truth_of_runs"]
+# Numbers of the streams below that of a run, so that no draw depends on whether another is made.
+DETECTION, SPREAD, OUTLIERS, TIMES = range(4)
+
+__all__ = [
+    "WHITE",
+    "Noise",
+    "Plots",
+    "check_runs",
+    "noisy_plots",
+    "streams",
+    "substream",
+    "truth_of_runs",
+]
 
 
 @dataclass(frozen=True)
@@ -94,7 +106,8 @@ class Plots:
     z : ndarray, shape (n_steps, n_runs, n_axes)
         Plots (m); NaN where there is none.
     sigma : ndarray, shape (n_steps, n_runs, n_axes)
-        Standard deviation of each plot on each axis (m); NaN where there is none.
+        Standard deviation of each plot on each axis that the tracker is told (m); NaN where there
+        is none.
     """
 
     z: Array
@@ -121,6 +134,20 @@ def streams(seed: int, runs: int) -> list[np.random.SeedSequence]:
     """
     check_runs(runs, seed)
     return np.random.SeedSequence(seed).spawn(runs)
+
+
+def substream(run: np.random.SeedSequence, number: int) -> np.random.Generator:
+    """Random numbers from a stream below that of a run, which is left as it is.
+
+    Parameters
+    ----------
+    run : SeedSequence
+        Stream of a run, see `streams`.
+    number : int
+        Number of the stream below it, from 0.
+    """
+    below = np.random.SeedSequence(entropy=run.entropy, spawn_key=(*run.spawn_key, number))
+    return np.random.default_rng(below)
 
 
 def check_runs(runs: int, seed: int) -> None:

@@ -67,8 +67,10 @@ def truth_columns(scenario: Scenario, runs: int) -> Columns:
 
 def _clock(scenario: Scenario, runs: int) -> Columns:
     """Run and time of each row."""
+    times = scenario.times(0, runs)
+    each = np.broadcast_to(times.reshape(len(times), -1), (len(times), runs))
     number = np.repeat(np.arange(runs), len(scenario.time))
-    return {"run": number.astype(str).tolist(), "t_s": np.tile(scenario.time, runs)}
+    return {"run": number.astype(str).tolist(), "t_s": each.T.ravel()}
 
 
 def _by_axis(name: str, values: Array) -> dict[str, Array]:

@@ -1,7 +1,8 @@
 """Trajectories of published experiments, and random sets of tracks like them.
 
-The functions take no arguments, or a seed, so that a result can be compared with a paper's for the
-same target. Their notes say what a paper leaves open, and how it is read here.
+The functions need no arguments, or a seed, so that a result can be compared with a paper's for the
+same target; `at` samples the same motion at other times. Their notes say what a paper leaves open,
+and how it is read here.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ import operator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.gains.checks import finite
 from fuzzytrack.reprs import summary
+from fuzzytrack.simulation.sampling import REGULAR, Sampling
 from fuzzytrack.simulation.trajectories import (
     constant_acceleration,
     constant_velocity,
@@ -50,7 +53,7 @@ TRACK_SETS = ("report", "mixed", "strong")
 # ---------------------------------------------------------------- single tracks
 
 
-def llinas_maneuver(name: str) -> tuple[Array, Array]:
+def llinas_maneuver(name: str, at: ArrayLike | None = None) -> tuple[Array, Array]:
     """One of the four submarine maneuvers of Llinas et al. (1998), section 5.2.
 
     Parameters
@@ -58,13 +61,16 @@ def llinas_maneuver(name: str) -> tuple[Array, Array]:
     name : {"M1", "M2", "M3", "M4"}
         M1 constant velocity, M2 constant acceleration, M3 turn with constant speed, M4 turn with
         constant angular acceleration.
+    at : array_like, optional
+        Other times (s), of any shape.
 
     Returns
     -------
     t : ndarray, shape (20,)
-        Times (s), 0 to 1140, 60 apart.
+        Times (s), 0 to 1140, 60 apart; or those of `at`.
     position : ndarray, shape (20, 2)
-        Position (m) in the sensor field centered on (0, 0).
+        Position (m) in the sensor field centered on (0, 0); of shape (..., 2) at times of shape
+        (...).
 
     Raises
     ------
@@ -86,7 +92,7 @@ def llinas_maneuver(name: str) -> tuple[Array, Array]:
     if name not in _STARTS:
         raise ValueError(f"name: unknown maneuver {name!r}; one of {', '.join(MANEUVERS)}")
     start, heading = _STARTS[name]
-    return _llinas(name, 6.0, 0.004, 4500.0, math.radians(heading), start)
+    return _llinas(name, 6.0, 0.004, 4500.0, math.radians(heading), start, at)
 
 
 def _llinas(
@@ -95,30 +101,36 @@ def _llinas(
     acceleration: float,
     radius: float,
     heading: float,
-    start: tuple[float, float] = (0.0, 0.0),
+    start: tuple[float, float],
+    at: ArrayLike | None,
 ) -> tuple[Array, Array]:
     if name == "M1":
-        return constant_velocity(speed=speed, heading=heading, start=start)
+        return constant_velocity(speed=speed, heading=heading, start=start, at=at)
     if name == "M2":
         return constant_acceleration(
-            speed=speed, acceleration=acceleration, heading=heading, start=start
+            speed=speed, acceleration=acceleration, heading=heading, start=start, at=at
         )
     if name == "M3":
-        return turn(speed=speed, radius=radius, heading=heading, start=start)
+        return turn(speed=speed, radius=radius, heading=heading, start=start, at=at)
     return turn_with_angular_acceleration(
-        speed=speed, acceleration=acceleration, radius=radius, heading=heading, start=start
+        speed=speed, acceleration=acceleration, radius=radius, heading=heading, start=start, at=at
     )
 
 
-def kim_lee() -> tuple[Array, Array]:
+def kim_lee(at: ArrayLike | None = None) -> tuple[Array, Array]:
     """Target of Kim & Lee: 120 m/s, with +5 g and later -5 g for 10 s each.
+
+    Parameters
+    ----------
+    at : array_like, optional
+        Other times (s), of any shape, >= 0.
 
     Returns
     -------
     t : ndarray, shape (100,)
-        Times (s), 1 to 100.
+        Times (s), 1 to 100; or those of `at`.
     position : ndarray, shape (100, 1)
-        Position (m); 0 at time 0.
+        Position (m); 0 at time 0. Of shape (..., 1) at times of shape (...).
 
     Notes
     -----
@@ -133,8 +145,9 @@ def kim_lee() -> tuple[Array, Array]:
     >>> round(float(position[40, 0] - position[39, 0]), 6)
     610.5
     """
-    t, acceleration = _kim_lee_acceleration()
-    return t, _integrated(0.0, 120.0, acceleration)[1:, None]
+    own, acceleration = _kim_lee_acceleration()
+    t = own if at is None else finite("at", at)
+    return t, _integrated(0.0, 120.0, acceleration, t)[..., None]
 
 
 def kim_lee_velocity() -> Array:
@@ -150,15 +163,20 @@ def _kim_lee_acceleration() -> tuple[Array, Array]:
     return t, np.where((t > 25) & (t <= 35), gee, np.where((t > 65) & (t <= 75), -gee, 0.0))
 
 
-def s3() -> tuple[Array, Array]:
+def s3(at: ArrayLike | None = None) -> tuple[Array, Array]:
     """Scenario S3, a target for the trackers of Al-Wagih & Abdulla.
+
+    Parameters
+    ----------
+    at : array_like, optional
+        Other times (s), of any shape, >= 0.
 
     Returns
     -------
     t : ndarray, shape (100,)
-        Times (s), 0 to 99.
+        Times (s), 0 to 99; or those of `at`.
     position : ndarray, shape (100, 2)
-        Position (m).
+        Position (m); of shape (..., 2) at times of shape (...).
 
     Notes
     -----
@@ -167,33 +185,45 @@ def s3() -> tuple[Array, Array]:
     15 m in x and 23 m in y, white; or 19 m and 23 m, AR(1) of correlation 0.7. The first two
     measurements are free of noise.
     """
-    t: Array = np.arange(100.0)
-    x = _integrated(0.0, 20.0, np.where(t[:-1] >= 70, 0.62, 0.0))
-    y = _integrated(0.0, 0.0, np.where(t[:-1] <= 22, 1.45, 0.0))
-    return t, np.stack([x, y], axis=1)
+    second: Array = np.arange(100.0)
+    t = second if at is None else finite("at", at)
+    x = _integrated(0.0, 20.0, np.where(second[:-1] >= 70, 0.62, 0.0), t)
+    y = _integrated(0.0, 0.0, np.where(second[:-1] <= 22, 1.45, 0.0), t)
+    return t, np.stack([x, y], axis=-1)
 
 
-def _integrated(position: float, speed: float, acceleration: Array) -> Array:
-    """Positions under accelerations, each constant for one second."""
+def _integrated(position: float, speed: float, acceleration: Array, at: Array) -> Array:
+    """Positions at times from 0 under accelerations, each constant for one second."""
     speeds = speed + np.concatenate([[0.0], np.cumsum(acceleration)])
     moves = speeds[:-1] + acceleration / 2
-    return np.asarray(position + np.concatenate([[0.0], np.cumsum(moves)]))
+    places = position + np.concatenate([[0.0], np.cumsum(moves)])
+    second, since = _split(at, len(acceleration))
+    after = np.append(acceleration, 0.0)[second]
+    return np.asarray(places[second] + speeds[second] * since + after * since**2 / 2)
 
 
-def warship(rate: float = 0.0168) -> tuple[Array, Array]:
+def _split(at: Array, last: int) -> tuple[NDArray[np.intp], Array]:
+    """Whole units of time, `last` at most, and the time since then."""
+    whole = np.clip(np.floor(at), 0, last).astype(np.intp)
+    return whole, at - whole
+
+
+def warship(rate: float = 0.0168, at: ArrayLike | None = None) -> tuple[Array, Array]:
     """Warship of Njonjo, Pan & Jeong (2017), Eqs. 15 and 16: a sum of sines.
 
     Parameters
     ----------
     rate : float
         Angular rate w of the sines (rad/s); sets the speed.
+    at : array_like, optional
+        Other times (s), of any shape.
 
     Returns
     -------
     t : ndarray, shape (1000,)
-        Times (s), 0 to 2997, 3 apart.
+        Times (s), 0 to 2997, 3 apart; or those of `at`.
     position : ndarray, shape (1000, 2)
-        Position (m), first (573, 1038.4).
+        Position (m), first (573, 1038.4); of shape (..., 2) at times of shape (...).
 
     Raises
     ------
@@ -207,7 +237,7 @@ def warship(rate: float = 0.0168) -> tuple[Array, Array]:
     """
     if not (math.isfinite(rate) and rate > 0):
         raise ValueError(f"rate must be finite and > 0, got {rate}")
-    t: Array = 3.0 * np.arange(1000.0)
+    t = np.asarray(3.0 * np.arange(1000.0)) if at is None else finite("at", at)
     u = rate * t
     x = (573 / 18) * (
         10 * np.sin(1.2 * u)
@@ -218,7 +248,7 @@ def warship(rate: float = 0.0168) -> tuple[Array, Array]:
         + 5 * np.cos(3 * u)
     ) + 10 * t
     y = (1038.4 / 20) * (20 * np.cos(0.3 * u) + 22 * np.sin(2 * u))
-    return t, np.stack([x, y], axis=1)
+    return t, np.stack([x, y], axis=-1)
 
 
 # ---------------------------------------------------------------- random sets
@@ -226,14 +256,14 @@ def warship(rate: float = 0.0168) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class TrackSet:
-    """Tracks for ranking trackers, in units of the noise and of the time between scans.
+    """Tracks for ranking trackers, in units of the noise and of the period of the set.
 
     Attributes
     ----------
     name : str
         Name of the set.
-    time : ndarray, shape (n_steps,)
-        Times, 0, 1, 2, …
+    time : ndarray, shape (n_steps,) or (n_steps, n_tracks)
+        Times, 0, 1, 2, … unless sampled otherwise; common, or each track's own.
     position : ndarray, shape (n_steps, n_tracks, 2)
         True positions, in standard deviations of the noise on each axis.
     kind : ndarray of str, shape (n_tracks,)
@@ -252,7 +282,7 @@ class TrackSet:
         return summary(self, "name", "position")
 
 
-def track_set(name: str, tracks: int, seed: int) -> TrackSet:
+def track_set(name: str, tracks: int, seed: int, sampling: Sampling = REGULAR) -> TrackSet:
     """Random tracks for ranking trackers.
 
     Parameters
@@ -269,6 +299,8 @@ def track_set(name: str, tracks: int, seed: int) -> TrackSet:
     seed : int
         Seed, not negative. Each track has a random stream of its own, so that the first tracks do
         not depend on the number of tracks.
+    sampling : Sampling
+        When the tracks are sampled; their motion does not depend on it.
 
     Returns
     -------
@@ -298,22 +330,28 @@ def track_set(name: str, tracks: int, seed: int) -> TrackSet:
         raise ValueError(f"tracks must be at least 1, got {number}")
     if seed < 0:
         raise ValueError(f"seed must not be negative, got {seed}")
-    draws = [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(number)]
+    streams = np.random.SeedSequence(seed).spawn(number)
+    scans, first = (20, 2) if name == "report" else (60, 8)
+    own: Array = np.arange(float(scans))
+    time = sampling.times(own, streams)
+    # Common times are given to every track.
+    each = [time] * number if time.ndim == 1 else list(time.T)
+    draws = [np.random.default_rng(stream) for stream in streams]
     if name == "report":
         kinds = [MANEUVERS[k % len(MANEUVERS)] for k in range(number)]
-        found = [_report(kind, rng) for kind, rng in zip(kinds, draws, strict=True)]
+        found = [_report(*track) for track in zip(kinds, draws, each, strict=True)]
     else:
         kinds = [name] * number
-        found = [_legs(rng, *_STRENGTHS[name]) for rng in draws]
+        found = [_legs(*track, *_STRENGTHS[name], scans) for track in zip(draws, each, strict=True)]
     position = np.stack(found, axis=1)
-    first = 2 if name == "report" else 8
-    return TrackSet(name, np.arange(float(len(position))), position, np.array(kinds), first)
+    return TrackSet(name, time, position, np.array(kinds), sampling.scan(first, own))
 
 
-def _report(kind: str, rng: np.random.Generator) -> Array:
+def _report(kind: str, rng: np.random.Generator, at: Array) -> Array:
     speed, acceleration = rng.uniform(3, 9), rng.uniform(0.002, 0.006)
     radius, heading = rng.uniform(2500, 7000), rng.uniform(0, 2 * math.pi)
-    return _llinas(kind, speed, acceleration, radius, heading)[1] / 115.0
+    start = (0.0, 0.0)
+    return _llinas(kind, speed, acceleration, radius, heading, start, 60.0 * at)[1] / 115.0
 
 
 # Range of a T²/σ, and of the first speed, in σ/T.
@@ -322,9 +360,10 @@ _STRENGTHS = {"mixed": ((0.1, 1.0), (1.5, 5.0)), "strong": ((1.0, 3.0), (4.5, 15
 
 def _legs(
     rng: np.random.Generator,
+    at: Array,
     accelerations: tuple[float, float],
     speeds: tuple[float, float],
-    steps: int = 60,
+    steps: int,
 ) -> Array:
     """Straight legs and maneuvers alternating, beginning with a straight leg."""
     low, high = accelerations
@@ -332,28 +371,38 @@ def _legs(
     speed, heading = rng.uniform(*speeds), rng.uniform(0, 2 * math.pi)
     # Along and to the left of the heading, scan by scan
     along, left = np.zeros(steps - 1), np.zeros(steps - 1)
-    at, straight, now = 0, True, speed
-    while at < steps - 1:
+    scan, straight, now = 0, True, speed
+    while scan < steps - 1:
         length = int(rng.integers(8, 21))
         if not straight:
             turns, side = bool(rng.integers(2)), float(rng.choice([-1.0, 1.0]))
             if turns and abs(now) > size:
-                left[at : at + length] = side * size
+                left[scan : scan + length] = side * size
             else:
-                along[at : at + length] = side * size
+                along[scan : scan + length] = side * size
                 now += length * side * size
-        at, straight = at + length, not straight
-    return _moved(speed, heading, along, left)
+        scan, straight = scan + length, not straight
+    return _moved(speed, heading, along, left, at)
 
 
-def _moved(speed: float, heading: float, along: Array, left: Array) -> Array:
+def _moved(speed: float, heading: float, along: Array, left: Array, at: Array) -> Array:
     """Positions under accelerations along and across the path, each constant during a scan."""
     speeds = speed + np.concatenate([[0.0], np.cumsum(along)])
     # A maneuver is either along or across the path, so the speed is constant in a turn.
     turns = np.divide(left, speeds[:-1], out=np.zeros_like(left), where=left != 0)
     headings = heading + np.concatenate([[0.0], np.cumsum(turns)])
-    middle = headings[:-1] + turns / 2
+    moves = _chords(speeds[:-1], along, headings[:-1], turns, np.ones_like(along))
+    places = np.concatenate([np.zeros((1, 2)), np.cumsum(moves, axis=0)])
+    scan, since = _split(at, len(along))
+    along, turns = np.append(along, 0.0), np.append(turns, 0.0)
+    return np.asarray(
+        places[scan] + _chords(speeds[scan], along[scan], headings[scan], turns[scan], since)
+    )
+
+
+def _chords(speed: Array, along: Array, heading: Array, turn: Array, time: Array) -> Array:
+    """Way of targets that speed up by `along` or turn by `turn` in a unit of time."""
+    middle = heading + turn * time / 2
     # Chord of the arc
-    way = (speeds[:-1] + along / 2) * np.sinc(turns / (2 * math.pi))
-    moves = way[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1)
-    return np.concatenate([np.zeros((1, 2)), np.cumsum(moves, axis=0)])
+    way = (speed + along * time / 2) * time * np.sinc(turn * time / (2 * math.pi))
+    return np.asarray(way[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1))

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive
 from fuzzytrack.reprs import summary
-from fuzzytrack.simulation.noise import WHITE, Noise, Plots, noisy_plots, truth_of_runs
+from fuzzytrack.simulation.noise import (
+    DETECTION,
+    OUTLIERS,
+    SPREAD,
+    WHITE,
+    Noise,
+    Plots,
+    noisy_plots,
+    substream,
+    truth_of_runs,
+)
 from fuzzytrack.simulation.sensor_field import SensorField
 
 __all__ = ["FieldSensors", "PlotNoise", "Scenario", "Sensors"]
@@ -47,6 +59,16 @@ class PlotNoise:
         Probability of a plot in a scan, 0 < detection <= 1.
     clean : int
         Number of plots, from the first, that are certainly detected and have no noise.
+    factors : sequence of float
+        Factors of `sigma`, > 0, scan by scan, from the first again after the last.
+    spread : float
+        At least 1. The standard deviation of each plot is multiplied with a number between
+        1/spread and spread, drawn uniformly in its logarithm.
+    outliers : (float, float)
+        Share of the plots that are outliers, from 0 to 1, and how many times as large their
+        standard deviation is as the tracker is told, > 0.
+    told : float
+        The tracker is told this many times the standard deviation, > 0.
 
     Raises
     ------
@@ -58,6 +80,10 @@ class PlotNoise:
     noise: Noise = WHITE
     detection: float = 1.0
     clean: int = 0
+    factors: tuple[float, ...] = ()
+    spread: float = 1.0
+    outliers: tuple[float, float] = (0.0, 1.0)
+    told: float = 1.0
 
     def __post_init__(self) -> None:
         deviation = positive("sigma", self.sigma).tolist()
@@ -67,25 +93,50 @@ class PlotNoise:
             raise ValueError(f"detection must be > 0 and <= 1, got {self.detection}")
         if self.clean < 0:
             raise ValueError(f"clean must not be negative, got {self.clean}")
+        object.__setattr__(self, "factors", tuple(positive("factors", self.factors).tolist()))
+        if not 1 <= self.spread < math.inf:
+            raise ValueError(f"spread must be finite and >= 1, got {self.spread}")
+        share, factor = self.outliers
+        if not (0 <= share <= 1 and 0 < factor < math.inf):
+            raise ValueError(
+                f"outliers must be a share from 0 to 1 and a factor > 0, got {share} and {factor}"
+            )
+        positive("told", self.told)
 
     def measure(self, truth: Array, runs: Sequence[np.random.SeedSequence]) -> Plots:
         """Plots of a target; see `Sensors.measure`."""
-        plots = noisy_plots(truth, self.sigma, runs, self.noise)
-        z, sigma = plots.z, plots.sigma
         true = truth_of_runs(truth, len(runs))
+        scans = len(true)
+        deviation = self._deviation(scans, runs)
+        plots = noisy_plots(true, deviation * self._excess(scans, runs), runs, self.noise)
+        z = plots.z
         z[: self.clean] = np.broadcast_to(true, z.shape)[: self.clean]
         if self.detection < 1:
-            # From a stream of its own, so that the noise does not depend on `detection`.
-            draws = [np.random.default_rng(run.spawn(1)[0]).random(len(z)) for run in _copies(runs)]
-            missed = np.stack(draws, axis=1) >= self.detection
+            missed = _uniform(runs, DETECTION, scans) >= self.detection
             missed[: self.clean] = False
-            z[missed] = sigma[missed] = np.nan
-        return Plots(z, sigma)
+            z[missed] = np.nan
+        return Plots(z, np.where(np.isnan(z), np.nan, self.told * deviation))
+
+    def _deviation(self, scans: int, runs: Sequence[np.random.SeedSequence]) -> Array:
+        """Standard deviation of each plot but for outliers, shape (scans, runs, n_axes or 1)."""
+        found = np.ones((scans, len(runs), 1))
+        if self.factors:
+            found *= np.resize(self.factors, scans)[:, None, None]
+        if self.spread > 1:
+            found *= self.spread ** (2 * _uniform(runs, SPREAD, scans) - 1)[..., None]
+        return np.asarray(found * np.asarray(self.sigma))
+
+    def _excess(self, scans: int, runs: Sequence[np.random.SeedSequence]) -> Array | float:
+        """Factor of the standard deviation of each plot, which no tracker is told."""
+        share, factor = self.outliers
+        if not share:
+            return 1.0
+        return np.where(_uniform(runs, OUTLIERS, scans) < share, factor, 1.0)[..., None]
 
 
-def _copies(runs: Sequence[np.random.SeedSequence]) -> list[np.random.SeedSequence]:
-    """Copies of random streams, so that spawning from them does not change the given ones."""
-    return [np.random.SeedSequence(entropy=run.entropy, spawn_key=run.spawn_key) for run in runs]
+def _uniform(runs: Sequence[np.random.SeedSequence], number: int, scans: int) -> Array:
+    """Numbers from 0 to 1, shape (scans, runs), each run's from a stream below its own."""
+    return np.stack([substream(run, number).random(scans) for run in runs], axis=1)
 
 
 @dataclass(frozen=True)
@@ -112,8 +163,8 @@ class Scenario:
     ----------
     name : str
         Name of the scenario.
-    time : array_like, shape (n_steps,)
-        Times of the scans (s), increasing.
+    time : array_like, shape (n_steps,) or (n_steps, n_tracks)
+        Times of the scans (s), increasing; common, or each track's own.
     position : array_like, shape (n_steps, n_axes) or (n_steps, n_tracks, n_axes)
         True positions (m). Of several tracks, run k flies number k modulo n_tracks.
     sensors : Sensors
@@ -158,7 +209,7 @@ class Scenario:
 
     def __post_init__(self) -> None:
         time, position = finite("time", self.time), finite("position", self.position)
-        if time.ndim != 1 or len(time) < 2 or not (np.diff(time) > 0).all():
+        if time.ndim not in (1, 2) or len(time) < 2 or not (np.diff(time, axis=0) > 0).all():
             raise ValueError(
                 "time must be two increasing times at least, "
                 f"got {np.array2string(time, threshold=6)}"
@@ -168,6 +219,13 @@ class Scenario:
                 f"position must have shape ({len(time)}, n_axes) or ({len(time)}, n_tracks, "
                 f"n_axes), got {position.shape}"
             )
+        if time.shape not in (position.shape[:1], position.shape[:-1]):
+            raise ValueError(
+                "time must be common to all tracks or each track's own, as many as positions, "
+                f"shape {position.shape[:-1]}; got {time.shape}"
+            )
+        if time.ndim == 2 and self.prepare_start:
+            raise ValueError("prepare_start must be False where tracks have times of their own")
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "position", position)
         if self.velocity is not None:
@@ -189,6 +247,21 @@ class Scenario:
         """Number of axes of space."""
         return int(self.position.shape[-1])
 
+    @property
+    def scan_time(self) -> Array:
+        """Times of the scans (s), shape (n_steps,): the mean over tracks that have their own."""
+        return self.time if self.time.ndim == 1 else np.asarray(self.time.mean(axis=1))
+
+    def times(self, first: int, count: int) -> Array:
+        """Times of runs (s), shape (n_steps,) if they are the same in all, else (n_steps, count).
+
+        Parameters
+        ----------
+        first, count : int
+            The first run, and how many.
+        """
+        return self.time if self.time.ndim == 1 else self.time[:, self._tracks(first, count)]
+
     def truth(self, first: int, count: int) -> tuple[Array, Array | None]:
         """True position and velocity of runs, shape (n_steps, n_axes) if it is the same in all.
 
@@ -199,6 +272,10 @@ class Scenario:
         """
         if self.position.ndim == 2:
             return self.position, self.velocity
-        tracks = np.arange(first, first + count) % self.position.shape[1]
+        tracks = self._tracks(first, count)
         velocity = None if self.velocity is None else self.velocity[:, tracks]
         return self.position[:, tracks], velocity
+
+    def _tracks(self, first: int, count: int) -> NDArray[np.intp]:
+        """The track that each run flies, where there are several."""
+        return np.asarray(np.arange(first, first + count) % self.position.shape[1])

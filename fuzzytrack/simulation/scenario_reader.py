@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import partial
+from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import FileError
 from fuzzytrack.io.recording import read_tracks
-from fuzzytrack.simulation.noise import Noise
+from fuzzytrack.simulation.noise import Noise, streams
 from fuzzytrack.simulation.published import (
     MANEUVERS,
     TRACK_SETS,
@@ -23,6 +24,7 @@ from fuzzytrack.simulation.published import (
     track_set,
     warship,
 )
+from fuzzytrack.simulation.sampling import PATTERNS, REGULAR, Sampling
 from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario, Sensors
 from fuzzytrack.simulation.sensor_field import SPACINGS, SensorField, sensor_grid
 from fuzzytrack.simulation.trajectories import (
@@ -39,6 +41,8 @@ __all__ = ["FORMAT_VERSION", "ScenarioReader"]
 
 #: Times, positions, and the first scan, from 0, that counts unless the file says otherwise.
 Target = tuple[Array, Array, int]
+#: Times and positions: at the target's own times, or at those of the argument `at`.
+Path = Callable[..., tuple[Array, Array]]
 
 FORMAT_VERSION = "1"
 
@@ -48,15 +52,20 @@ MAX_TRACKS = 10_000
 MAX_SENSORS = 10_000
 MAX_SIGHTS = 10_000_000
 
+# Times that are drawn for a single target that is sampled irregularly: run k has number k modulo
+# this many.
+_DRAWS = 100
+
 _REQUIRED = ("scenario", "name", "target", "sensors")
-_OPTIONAL = ("source", "start", "score", "process_sigma", "trackers")
+_OPTIONAL = ("source", "sampling", "start", "score", "process_sigma", "trackers")
 _STARTS = ("as-seen", "interpolate")
 _SIGMA_FROM = ("truth", "plot")
+_PATTERNS = tuple(pattern for pattern in PATTERNS if pattern != "regular")
 _TRUTH = {"yes": True, "true": True, "no": False, "false": False}
 
 _MOTION_KEYS = ("heading", "start", "steps", "period")
 #: Motion to its function, and the keys that it needs.
-_MOTIONS: dict[str, tuple[Callable[..., tuple[Array, Array]], tuple[str, ...]]] = {
+_MOTIONS: dict[str, tuple[Path, tuple[str, ...]]] = {
     "constant-velocity": (constant_velocity, ("speed",)),
     "constant-acceleration": (constant_acceleration, ("speed", "acceleration")),
     "turn": (turn, ("speed", "radius")),
@@ -65,7 +74,7 @@ _MOTIONS: dict[str, tuple[Callable[..., tuple[Array, Array]], tuple[str, ...]]] 
         ("speed", "acceleration", "radius"),
     ),
 }
-_PAPERS: dict[str, Callable[..., tuple[Array, Array]]] = {
+_PAPERS: dict[str, Path] = {
     "kim-lee": kim_lee,
     "s3": s3,
     "warship": warship,
@@ -83,7 +92,8 @@ _TARGET_KEYS = (
     *_MOTION_KEYS,
     *("leg", "times", "rate", "tracks", "seed", "time", "axes"),
 )
-_SENSOR_KEYS = ("clean", "spacing", "centre", *_FIELD_NUMBERS, *_FIELD_KEYS)
+_PLOT_KEYS = ("clean", "factors", "spread", "outliers", "told")
+_SENSOR_KEYS = (*_PLOT_KEYS, "spacing", "centre", *_FIELD_NUMBERS, *_FIELD_KEYS)
 
 
 class ScenarioReader:
@@ -97,6 +107,7 @@ class ScenarioReader:
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self.sampling: Node | None = None
 
     def scenario(self) -> Scenario:
         """Read the whole document.
@@ -109,12 +120,18 @@ class ScenarioReader:
         document = self.document
         self._check_version()
         top = document.fields(document.root, "the scenario", _REQUIRED, _OPTIONAL)
-        time, position, first_scored = self._target(top["target"])
+        self.sampling = top.get("sampling")
+        time, position, first_scored = self._target(top["target"], self._when())
         if len(time) <= first_scored:
             raise document.error(
-                top["target"], f"the target has {len(time)} scans; at least {first_scored + 1}"
+                self.sampling or top["target"],
+                f"the target has {len(time)} scans; at least {first_scored + 1}",
             )
         start = document.choice(top["start"], "start", _STARTS) if "start" in top else "as-seen"
+        if start == "interpolate" and time.ndim == 2:
+            raise document.error(
+                top["start"], "start 'interpolate' needs times that are the same in all runs"
+            )
         if "score" in top:
             first_scored = self._first_scored(top["score"], len(time))
         process = top.get("process_sigma")
@@ -168,21 +185,49 @@ class ScenarioReader:
 
     def _beside(self, name: str) -> str:
         """Path of a file that the scenario names, relative to the folder of the scenario."""
-        return str(Path(self.document.file).parent / name)
+        return str(FilePath(self.document.file).parent / name)
 
     # ---------------------------------------------------------------- target
 
-    def _target(self, node: Node) -> Target:
-        kinds: dict[str, Callable[[Node], Target]] = {
+    def _when(self) -> Sampling:
+        document, node = self.document, self.sampling
+        if node is None:
+            return REGULAR
+        fields = document.fields(node, "sampling", (), (*_PATTERNS, "period"))
+        found = [word for word in fields if word in _PATTERNS]
+        if len(found) > 1:
+            raise document.error(
+                document.entries(node, "sampling")[found[1]][0],
+                f"sampling has {found[0]!r} already; it takes one of {', '.join(_PATTERNS)}",
+            )
+        period = document.number(fields["period"], "period") if "period" in fields else None
+        with self._errors_at(fields, node):
+            if not found:
+                return Sampling(period=period)
+            return Sampling(found[0], self._each(fields[found[0]], found[0]), period)
+
+    def _target(self, node: Node, sampling: Sampling) -> Target:
+        kinds: dict[str, Callable[[Node, Sampling], Target]] = {
             "motion": self._motion,
             "waypoints": self._waypoints,
             "maneuver": self._maneuver,
             "set": self._set,
             "file": self._file,
         }
-        return kinds[self._kind(node, "target", kinds, _TARGET_KEYS)](node)
+        return kinds[self._kind(node, "target", kinds, _TARGET_KEYS)](node, sampling)
 
-    def _motion(self, node: Node) -> Target:
+    def _sampled(self, path: Path, sampling: Sampling) -> Target:
+        """A single target at its own times, or at those of the sampling."""
+        time, position = path()
+        first = 2
+        if sampling != REGULAR:
+            first = sampling.scan(first, time)
+            with self._errors_of_sampling():
+                time = sampling.times(time, streams(0, _DRAWS))
+            _, position = path(at=time)
+        return time, position, first
+
+    def _motion(self, node: Node, sampling: Sampling) -> Target:
         document = self.document
         word = document.choice(document.entries(node, "target")["motion"][1], "motion", _MOTIONS)
         make, needed = _MOTIONS[word]
@@ -198,9 +243,9 @@ class ScenarioReader:
             elif key != "motion":
                 given[key] = document.number(value, key)
         with self._errors_at(fields, node):
-            return *make(**given), 2
+            return self._sampled(partial(make, **given), sampling)
 
-    def _waypoints(self, node: Node) -> Target:
+    def _waypoints(self, node: Node, sampling: Sampling) -> Target:
         document = self.document
         fields = document.fields(node, "target", ("waypoints",), ("leg", "times", "period"))
         if "leg" in fields and "times" in fields:
@@ -215,9 +260,10 @@ class ScenarioReader:
         if period > 0 and last / period > MAX_SCANS:
             raise document.error(node, f"more than {MAX_SCANS} scans; make the period longer")
         with self._errors_at({"points": fields["waypoints"], **fields}, node):
-            return *waypoints(points, times=times, leg=leg, period=period), 2
+            path = partial(waypoints, points, times=times, leg=leg, period=period)
+            return self._sampled(path, sampling)
 
-    def _maneuver(self, node: Node) -> Target:
+    def _maneuver(self, node: Node, sampling: Sampling) -> Target:
         document = self.document
         allowed = (*MANEUVERS, *_PAPERS)
         entry = document.entries(node, "target")["maneuver"][1]
@@ -225,21 +271,28 @@ class ScenarioReader:
         optional = ("rate",) if word == "warship" else ()
         fields = document.fields(node, f"a target in maneuver {word}", ("maneuver",), optional)
         if word in MANEUVERS:
-            return *llinas_maneuver(word), 2
+            return self._sampled(partial(llinas_maneuver, word), sampling)
         given = {"rate": document.number(fields["rate"], "rate")} if "rate" in fields else {}
         with self._errors_at(fields, node):
-            return *_PAPERS[word](**given), 2
+            return self._sampled(partial(_PAPERS[word], **given), sampling)
 
-    def _set(self, node: Node) -> Target:
+    def _set(self, node: Node, sampling: Sampling) -> Target:
         fields = self.document.fields(node, "a set of targets", ("set", "tracks"), ("seed",))
         word = self.document.choice(fields["set"], "set", TRACK_SETS)
         tracks = self._whole(fields["tracks"], "tracks", 1, MAX_TRACKS)
         seed = self._whole(fields["seed"], "seed", 0, 2**53) if "seed" in fields else 0
-        found = track_set(word, tracks, seed)
+        with self._errors_of_sampling():
+            found = track_set(word, tracks, seed, sampling)
         return found.time, found.position, found.first_scored
 
-    def _file(self, node: Node) -> Target:
+    def _file(self, node: Node, sampling: Sampling) -> Target:
         document = self.document
+        if sampling != REGULAR:
+            raise document.error(
+                self.sampling or node,
+                "sampling needs a target that is known at all times; a recorded one has the times "
+                "of its file",
+            )
         fields = document.fields(node, "a target from a file", ("file",), ("time", "axes"))
         name = self._beside(document.text(fields["file"], "file"))
         time = document.text(fields["time"], "time") if "time" in fields else None
@@ -270,7 +323,7 @@ class ScenarioReader:
 
     def _noise(self, node: Node, position: Array) -> Sensors:
         document = self.document
-        optional = ("detection", "clean", *_NOISE_KEYS)
+        optional = ("detection", *_PLOT_KEYS, *_NOISE_KEYS)
         fields = document.fields(node, "sensors", ("sigma",), optional)
         sigma = self._each(fields["sigma"], "sigma")
         if isinstance(sigma, list) and len(sigma) != position.shape[-1]:
@@ -278,12 +331,21 @@ class ScenarioReader:
                 fields["sigma"],
                 f"sigma has {len(sigma)} numbers, the target {position.shape[-1]} axes",
             )
-        detection = (
-            document.number(fields["detection"], "detection") if "detection" in fields else 1
-        )
-        clean = self._whole(fields["clean"], "clean", 0, MAX_SCANS) if "clean" in fields else 0
+        given: dict[str, Any] = {
+            key: document.number(fields[key], key)
+            for key in ("detection", "spread", "told")
+            if key in fields
+        }
+        if "clean" in fields:
+            given["clean"] = self._whole(fields["clean"], "clean", 0, MAX_SCANS)
+        if "factors" in fields:
+            given["factors"] = self._numbers(fields["factors"], "factors")
+        if "outliers" in fields:
+            names = ("share", "factor")
+            parts = document.fields(fields["outliers"], "outliers", names)
+            given["outliers"] = tuple(document.number(parts[name], name) for name in names)
         with self._errors_at(fields, node):
-            return PlotNoise(sigma, self._kind_of_noise(fields), detection, clean)  # type: ignore[arg-type]
+            return PlotNoise(sigma, self._kind_of_noise(fields), **given)  # type: ignore[arg-type]
 
     def _grid(self, node: Node, position: Array) -> Sensors:
         document = self.document
@@ -368,6 +430,14 @@ class ScenarioReader:
                     raise self.document.unknown(key, word, f"key in {role}:", tuple(kinds))
             raise self.document.error(node, f"{role} needs one of {', '.join(kinds)}")
         return found[0]
+
+    def _errors_of_sampling(self) -> AbstractContextManager[None]:
+        """Give an error of the times the place of the period, else of the sampling."""
+        node = self.sampling
+        if node is None:
+            return nullcontext()
+        fields = self.document.entries(node, "sampling")
+        return self._errors_at({word: value for word, (_, value) in fields.items()}, node)
 
     @contextmanager
     def _errors_at(self, fields: Mapping[str, Node], node: Node) -> Iterator[None]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.gains.checks import finite, positive
+from fuzzytrack.gains.checks import finite, positive, within
 
 __all__ = [
     "constant_acceleration",
@@ -33,6 +33,7 @@ def constant_velocity(
     start: Sequence[float] = (0.0, 0.0),
     steps: int = 20,
     period: float = 60.0,
+    at: ArrayLike | None = None,
 ) -> tuple[Array, Array]:
     """Target on a straight line with constant speed.
 
@@ -48,13 +49,15 @@ def constant_velocity(
         Number of samples, at least 1.
     period : float
         Time between samples (s).
+    at : array_like, optional
+        Times of the samples (s), of any shape; `steps` and `period` are not used then.
 
     Returns
     -------
     t : ndarray, shape (steps,)
-        Times (s) from 0, `period` apart.
+        Times (s) from 0, `period` apart; or those of `at`.
     position : ndarray, shape (steps, 2)
-        Position (m).
+        Position (m); of shape (..., 2) at times of shape (...).
 
     Raises
     ------
@@ -73,7 +76,13 @@ def constant_velocity(
     array([6840.,    0.])
     """
     return constant_acceleration(
-        speed=speed, acceleration=0.0, heading=heading, start=start, steps=steps, period=period
+        speed=speed,
+        acceleration=0.0,
+        heading=heading,
+        start=start,
+        steps=steps,
+        period=period,
+        at=at,
     )
 
 
@@ -85,6 +94,7 @@ def constant_acceleration(
     start: Sequence[float] = (0.0, 0.0),
     steps: int = 20,
     period: float = 60.0,
+    at: ArrayLike | None = None,
 ) -> tuple[Array, Array]:
     """Target on a straight line with constant acceleration along it.
 
@@ -94,15 +104,13 @@ def constant_acceleration(
         First speed (m/s).
     acceleration : float
         Acceleration along the heading (m/s²); a target that brakes past a standstill goes back.
-    heading, start, steps, period
+    heading, start, steps, period, at
         As for `constant_velocity`.
 
     Returns
     -------
-    t : ndarray, shape (steps,)
-        Times (s) from 0, `period` apart.
-    position : ndarray, shape (steps, 2)
-        Position (m).
+    t, position : ndarray
+        As for `constant_velocity`.
 
     Raises
     ------
@@ -113,7 +121,7 @@ def constant_acceleration(
     -----
     Llinas et al. (1998), section 4.1, trajectory 2.
     """
-    t, way = _way(speed, acceleration, steps, period)
+    t, way = _way(speed, acceleration, steps, period, at)
     return t, _placed(way, np.zeros_like(way), heading, start)
 
 
@@ -125,6 +133,7 @@ def turn(
     start: Sequence[float] = (0.0, 0.0),
     steps: int = 20,
     period: float = 60.0,
+    at: ArrayLike | None = None,
 ) -> tuple[Array, Array]:
     """Target on a circle with constant speed.
 
@@ -134,15 +143,13 @@ def turn(
         Speed (m/s).
     radius : float
         Radius of the circle (m), not 0; negative for a turn to the right.
-    heading, start, steps, period
+    heading, start, steps, period, at
         As for `constant_velocity`; the first heading.
 
     Returns
     -------
-    t : ndarray, shape (steps,)
-        Times (s) from 0, `period` apart.
-    position : ndarray, shape (steps, 2)
-        Position (m).
+    t, position : ndarray
+        As for `constant_velocity`.
 
     Raises
     ------
@@ -161,6 +168,7 @@ def turn(
         start=start,
         steps=steps,
         period=period,
+        at=at,
     )
 
 
@@ -173,6 +181,7 @@ def turn_with_angular_acceleration(
     start: Sequence[float] = (0.0, 0.0),
     steps: int = 20,
     period: float = 60.0,
+    at: ArrayLike | None = None,
 ) -> tuple[Array, Array]:
     """Target on a circle with constant angular acceleration.
 
@@ -184,15 +193,13 @@ def turn_with_angular_acceleration(
         Acceleration along the circle (m/s²).
     radius : float
         Radius of the circle (m), not 0; negative for a turn to the right.
-    heading, start, steps, period
+    heading, start, steps, period, at
         As for `constant_velocity`; the first heading.
 
     Returns
     -------
-    t : ndarray, shape (steps,)
-        Times (s) from 0, `period` apart.
-    position : ndarray, shape (steps, 2)
-        Position (m).
+    t, position : ndarray
+        As for `constant_velocity`.
 
     Raises
     ------
@@ -204,7 +211,7 @@ def turn_with_angular_acceleration(
     Llinas et al. (1998), section 4.1, trajectory 4: the angular acceleration is
     acceleration/radius.
     """
-    t, way = _way(speed, acceleration, steps, period)
+    t, way = _way(speed, acceleration, steps, period, at)
     side = float(finite("radius", radius))
     if side == 0:
         raise ValueError("radius must be finite and not 0, got 0")
@@ -220,6 +227,7 @@ def waypoints(
     times: ArrayLike | None = None,
     leg: float = 60.0,
     period: float = 60.0,
+    at: ArrayLike | None = None,
 ) -> tuple[Array, Array]:
     """Target on a cubic spline through way-points.
 
@@ -233,19 +241,24 @@ def waypoints(
         Time from one way-point to the next (s); not used with `times`.
     period : float
         Time between samples (s).
+    at : array_like, optional
+        Times of the samples (s), of any shape, from the first way-point to the last; `period` is
+        not used then.
 
     Returns
     -------
     t : ndarray, shape (n_steps,)
-        Times (s), `period` apart, from the first way-point until the last at most.
+        Times (s), `period` apart, from the first way-point until the last at most; or those of
+        `at`.
     position : ndarray, shape (n_steps, n_axes)
-        Position (m).
+        Position (m); of shape (..., n_axes) at times of shape (...).
 
     Raises
     ------
     ValueError
         If there are fewer than two way-points, they are all on one spot, a number is not finite,
-        times do not increase, or `leg` or `period` is not positive.
+        times do not increase, `leg` or `period` is not positive, or `at` is before the first
+        way-point or after the last.
 
     Notes
     -----
@@ -281,9 +294,13 @@ def waypoints(
                 f"times must be {len(places)} increasing numbers, one for each way-point; "
                 f"got {passed.tolist()}"
             )
-    dt = float(positive("period", period))
-    last = math.floor((passed[-1] - passed[0]) / dt * (1 + 1e-12))
-    t = np.asarray(np.minimum(passed[0] + dt * np.arange(last + 1), passed[-1]), np.float64)
+    if at is not None:
+        t = finite("at", at)
+        within("at", t, (t >= passed[0]) & (t <= passed[-1]), "within the times of the way-points")
+    else:
+        dt = float(positive("period", period))
+        last = math.floor((passed[-1] - passed[0]) / dt * (1 + 1e-12))
+        t = np.asarray(np.minimum(passed[0] + dt * np.arange(last + 1), passed[-1]), np.float64)
     return t, np.asarray(CubicSpline(passed, places)(t))
 
 
@@ -368,9 +385,11 @@ def sample_times(steps: int, period: float) -> Array:
     return np.asarray(np.arange(number) * positive("period", period))
 
 
-def _way(speed: float, acceleration: float, steps: int, period: float) -> tuple[Array, Array]:
+def _way(
+    speed: float, acceleration: float, steps: int, period: float, at: ArrayLike | None
+) -> tuple[Array, Array]:
     """Times, and the distance covered by then."""
-    t = sample_times(steps, period)
+    t = sample_times(steps, period) if at is None else finite("at", at)
     return t, finite("speed", speed) * t + finite("acceleration", acceleration) * t**2 / 2
 
 
@@ -381,4 +400,6 @@ def _placed(along: Array, across: Array, heading: float, start: Sequence[float])
         raise ValueError(f"start must be two coordinates (m), got shape {first.shape}")
     angle = float(finite("heading", heading))
     cos, sin = math.cos(angle), math.sin(angle)
-    return np.asarray(first + np.stack([along * cos - across * sin, along * sin + across * cos], 1))
+    return np.asarray(
+        first + np.stack([along * cos - across * sin, along * sin + across * cos], -1)
+    )

@@ -135,7 +135,7 @@ def monte_carlo(
         names=tuple(made),
         seed=seed,
         first_scored=scenario.first_scored,
-        time=scenario.time,
+        time=scenario.scan_time,
         predicted=whole["predicted"],
         filtered=whole["filtered"],
         velocity=whole.get("velocity"),
@@ -216,6 +216,7 @@ def run_chunk(
     """
     # What SeedSequence(seed).spawn gives for these runs.
     streams = [np.random.SeedSequence(seed, spawn_key=(k,)) for k in runs]
+    times = scenario.times(runs.start, len(runs))
     position, velocity = scenario.truth(runs.start, len(runs))
     plots = scenario.sensors.measure(position, streams)
     if scenario.prepare_start:
@@ -225,7 +226,7 @@ def run_chunk(
     part = _blank(len(trackers), plots.z.shape, moving is not None, scenario.process_sigma)
     part["measured"] = _turned(plots.z - true)
     for k, tracker in enumerate(trackers.values()):
-        result = tracker.run(scenario.time, plots.z, plots.sigma)
+        result = tracker.run(times, plots.z, plots.sigma)
         part["predicted"][k] = _turned(result.predicted - true)
         part["filtered"][k] = _turned(result.filtered - true)
         if moving is not None:
@@ -316,6 +317,7 @@ def _some(result: TrackResult, runs: slice) -> TrackResult:
     gains = (getattr(result.gains, name)[:, runs] for name in ("alpha", "beta", "gamma"))
     return replace(
         result,
+        time=result.time if result.time.ndim == 1 else result.time[:, runs],
         **{name: getattr(result, name)[:, runs] for name in arrays},
         gains=Gains(*gains),
     )

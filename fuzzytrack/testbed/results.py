@@ -72,7 +72,7 @@ class Results:
     first_scored : int
         First scan, from 0, whose errors count.
     time : ndarray, shape (n_steps,)
-        Times of the scans (s).
+        Times of the scans (s); their means where runs have times of their own.
     predicted : ndarray, shape (n_trackers, runs, n_steps, n_axes)
         Predicted minus true position (m); NaN where there is no prediction.
     filtered : ndarray, same shape

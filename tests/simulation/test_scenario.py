@@ -38,6 +38,72 @@ def test_missed_plots():
     )
 
 
+TRUTH = np.zeros((3000, 2))
+
+
+def test_the_share_of_plots_is_the_probability_of_detection():
+    for detection in (0.9, 0.7, 0.5, 0.3):
+        plots = PlotNoise(1.0, detection=detection).measure(TRUTH, streams(4, 5))
+        seen = ~np.isnan(plots.z[..., 0])
+        assert abs(seen.mean() - detection) < 4 * np.sqrt(detection * (1 - detection) / seen.size)
+
+
+def test_a_standard_deviation_of_each_plot():
+    every = PlotNoise((3.0, 7.0)).measure(TRUTH, streams(4, 3))
+    plots = PlotNoise((3.0, 7.0), spread=2.0).measure(TRUTH, streams(4, 3))
+    factor = plots.sigma[..., 0] / 3
+    # One factor a plot, told to the tracker, and the noise is as large as that.
+    np.testing.assert_allclose(plots.sigma[..., 1], 7 * factor, rtol=1e-14)
+    np.testing.assert_allclose(plots.z, every.z * factor[..., None], rtol=1e-14)
+    logs = np.log2(factor)
+    assert (logs >= -1).all()
+    assert (logs < 1).all()
+    assert abs(logs.mean()) < 4 / np.sqrt(3 * logs.size)
+    np.testing.assert_allclose(logs.std(), 1 / np.sqrt(3), rtol=0.03)
+    # As told in any company
+    alone = PlotNoise((3.0, 7.0), spread=2.0).measure(TRUTH, streams(4, 3)[1:])
+    np.testing.assert_array_equal(alone.sigma, plots.sigma[:, 1:])
+
+
+def test_given_factors_return():
+    plots = PlotNoise(4.0, factors=[1, 0.5, 3]).measure(np.zeros((7, 1)), streams(4, 2))
+    expected = 4 * np.array([1, 0.5, 3, 1, 0.5, 3, 1])
+    np.testing.assert_array_equal(plots.sigma[:, 1, 0], expected)
+    every = PlotNoise(1.0).measure(np.zeros((7, 1)), streams(4, 2))
+    np.testing.assert_allclose(plots.z[:, 1, 0], expected * every.z[:, 1, 0], rtol=1e-14)
+
+
+def test_outliers_are_not_told():
+    every = PlotNoise(3.0).measure(TRUTH, streams(4, 3))
+    plots = PlotNoise(3.0, outliers=(0.02, 10.0)).measure(TRUTH, streams(4, 3))
+    np.testing.assert_array_equal(plots.sigma, every.sigma)
+    out = plots.z[..., 0] != every.z[..., 0]
+    assert abs(out.mean() - 0.02) < 4 * np.sqrt(0.02 / out.size)
+    np.testing.assert_allclose(plots.z[out], 10 * every.z[out], rtol=1e-13)
+    np.testing.assert_array_equal(plots.z[~out], every.z[~out])
+
+
+@pytest.mark.parametrize("told", [0.5, 2.0])
+def test_a_wrong_standard_deviation_is_told(told):
+    every = PlotNoise((3.0, 7.0), detection=0.8).measure(TRUTH, streams(4, 3))
+    plots = PlotNoise((3.0, 7.0), detection=0.8, told=told).measure(TRUTH, streams(4, 3))
+    np.testing.assert_array_equal(plots.z, every.z)
+    np.testing.assert_array_equal(plots.sigma, told * every.sigma)
+
+
+def test_what_is_drawn_for_one_purpose_does_not_depend_on_another():
+    runs = streams(4, 3)
+    some = PlotNoise(1.0, detection=0.6).measure(TRUTH, runs)
+    noise = PlotNoise(1.0, detection=0.6, spread=3.0, outliers=(0.1, 5.0), told=0.5)
+    both = noise.measure(TRUTH, runs)
+    np.testing.assert_array_equal(np.isnan(some.z), np.isnan(both.z))
+    spread = PlotNoise(1.0, spread=3.0).measure(TRUTH, runs)
+    seen = ~np.isnan(both.z)
+    np.testing.assert_array_equal(both.sigma[seen], 0.5 * spread.sigma[seen])
+    again = noise.measure(TRUTH, runs)
+    np.testing.assert_array_equal(again.z, both.z)
+
+
 def test_tracks_of_their_own():
     truth = np.stack([ONE, ONE + 100], axis=1)
     plots = PlotNoise(1.0, clean=2).measure(truth, streams(0, 2))
@@ -70,6 +136,21 @@ def test_truth_of_runs():
     assert Scenario("no velocity", T, tracks, PlotNoise(1.0)).truth(0, 2)[1] is None
 
 
+def test_times_of_runs():
+    tracks = np.stack([ONE, ONE + 10, ONE + 20], axis=1)
+    times = T[:, None] * [1.0, 2.0, 4.0]
+    three = Scenario("three", times, tracks, PlotNoise(1.0))
+    np.testing.assert_array_equal(three.times(4, 4), times[:, [1, 2, 0, 1]])
+    np.testing.assert_allclose(three.scan_time, T * 7 / 3)
+    common = Scenario("common", T, tracks, PlotNoise(1.0))
+    np.testing.assert_array_equal(common.times(4, 4), T)
+    np.testing.assert_array_equal(common.scan_time, T)
+    with pytest.raises(ValueError, match="prepare_start must be False where tracks have times of"):
+        Scenario("three", times, tracks, PlotNoise(1.0), prepare_start=True)
+    with pytest.raises(ValueError, match="time must be two increasing times"):
+        Scenario("three", -times, tracks, PlotNoise(1.0))
+
+
 @pytest.mark.parametrize(
     ("wrong", "complaint"),
     [
@@ -78,6 +159,12 @@ def test_truth_of_runs():
         ({"detection": 0.0}, "detection must be > 0 and <= 1, got 0"),
         ({"detection": 1.1}, "detection must be > 0 and <= 1, got 1.1"),
         ({"clean": -1}, "clean must not be negative, got -1"),
+        ({"factors": [1, 0]}, "factors must be finite and > 0, got 0 at index 1"),
+        ({"spread": 0.5}, "spread must be finite and >= 1, got 0.5"),
+        ({"spread": np.inf}, "spread must be finite and >= 1, got inf"),
+        ({"outliers": (1.5, 5.0)}, "outliers must be a share from 0 to 1 and a factor > 0, got 1"),
+        ({"outliers": (0.1, 0.0)}, "outliers must be a share .* > 0, got 0.1 and 0"),
+        ({"told": 0.0}, "told must be finite and > 0, got 0"),
     ],
 )
 def test_impossible_noise(wrong, complaint):
@@ -90,7 +177,7 @@ def test_impossible_noise(wrong, complaint):
     [
         ({"time": [0.0]}, "time must be two increasing times"),
         ({"time": T[::-1]}, "time must be two increasing times"),
-        ({"time": T[:, None]}, "time must be two increasing times"),
+        ({"time": T[:, None]}, r"time must be common .* shape \(6,\); got \(6, 1\)"),
         ({"position": T}, r"position must have shape \(6, n_axes\)"),
         ({"position": ONE[:5]}, r"position must have shape .* got \(5, 2\)"),
         ({"position": ONE[:, :0]}, "position must have shape"),

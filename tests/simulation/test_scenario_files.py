@@ -6,7 +6,9 @@ import pytest
 
 from fuzzytrack.errors import ScenarioError
 from fuzzytrack.simulation.noise import Noise, noisy_plots, streams
+from fuzzytrack.simulation.plot_table import plot_columns
 from fuzzytrack.simulation.published import kim_lee, llinas_maneuver, s3, track_set, warship
+from fuzzytrack.simulation.sampling import Sampling
 from fuzzytrack.simulation.scenario import PlotNoise
 from fuzzytrack.simulation.scenario_files import (
     load_scenario,
@@ -24,6 +26,7 @@ from fuzzytrack.simulation.trajectories import (
     waypoints,
 )
 from fuzzytrack.testbed.montecarlo import monte_carlo
+from fuzzytrack.trackers.catalog import make_tracker
 
 HEAD = "scenario: 1\nname: a test\n"
 SENSORS = "sensors: {sigma: 10}\n"
@@ -157,6 +160,113 @@ def test_recorded_target_beside_the_scenario(tmp_path, monkeypatch):
         load_scenario("there/mine.yaml")
 
 
+# -------------------------------------------------------------------- sampling
+
+
+def sampled(target, sampling):
+    return loads_scenario(f"{HEAD}target: {target}\n{SENSORS}sampling: {sampling}\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "target", "path"),
+    [
+        (
+            "{motion: turn, speed: 6, radius: 900, steps: 12}",
+            turn(speed=6.0, radius=900.0, steps=12),
+            lambda t: turn(speed=6.0, radius=900.0, at=t),
+        ),
+        (
+            "{waypoints: [[0], [9], [20]], times: [5, 80, 300]}",
+            waypoints([[0], [9], [20]], times=[5.0, 80.0, 300.0]),
+            lambda t: waypoints([[0], [9], [20]], times=[5.0, 80.0, 300.0], at=t),
+        ),
+        ("{maneuver: M4}", llinas_maneuver("M4"), lambda t: llinas_maneuver("M4", at=t)),
+        ("{maneuver: kim-lee}", kim_lee(), lambda t: kim_lee(at=t)),
+        ("{maneuver: s3}", s3(), lambda t: s3(at=t)),
+        ("{maneuver: warship}", warship(), lambda t: warship(at=t)),
+    ],
+)
+def test_sampled_targets(text, target, path):
+    scenario = sampled(text, "{log-uniform: [1, 10]}")
+    own = target[0]
+    assert scenario.time.shape == (len(own), 100)
+    np.testing.assert_array_equal(scenario.time[0], own[0])
+    np.testing.assert_allclose(scenario.time[-1], own[-1], rtol=1e-14)
+    np.testing.assert_array_equal(scenario.position, path(scenario.time)[1])
+    # On its own times the path is the target itself.
+    np.testing.assert_allclose(path(own)[1], target[1], rtol=1e-12, atol=1e-9)
+    np.testing.assert_array_equal(sampled(text, "{log-uniform: [1, 10]}").time, scenario.time)
+    every = sampled(text, f"{{period: {2 * (own[1] - own[0])}}}")
+    np.testing.assert_allclose(every.time, own[::2], rtol=1e-14)
+    np.testing.assert_allclose(every.position, target[1][::2], rtol=1e-12, atol=1e-9)
+
+
+def test_a_sampled_set():
+    scenario = sampled("{set: mixed, tracks: 5, seed: 3}", "{alternate: [1, 10], period: 2}")
+    expected = track_set("mixed", 5, 3, Sampling("alternate", (1, 10), 2.0))
+    np.testing.assert_array_equal(scenario.time, expected.time)
+    np.testing.assert_array_equal(scenario.position, expected.position)
+    assert scenario.first_scored == expected.first_scored == 4
+
+
+def test_an_experiment_with_times_of_each_run(tmp_path):
+    text = f"{HEAD}target: {{set: mixed, tracks: 3, seed: 3}}\n{SENSORS}sampling: {{jitter: 0.3}}\n"
+    scenario = loads_scenario(text + "process_sigma: 1\n")
+    trackers = ["fixed:alpha=0.5:beta=0.2", "kalman-cv:sigma_v=1"]
+    results = monte_carlo(scenario, trackers, 5, 1)
+    np.testing.assert_array_equal(results.time, scenario.time.mean(axis=1))
+    for run in range(5):
+        times = scenario.time[:, run % 3]
+        z = scenario.position[:, run % 3] + results.measured[run]
+        predicted = make_tracker(trackers[1]).run(times, z, 10.0).predicted
+        errors = predicted - scenario.position[:, run % 3]
+        np.testing.assert_allclose(results.predicted[1, run], errors, rtol=1e-9, atol=1e-9)
+    assert np.isfinite(results.nis[:, :, 2:]).all()
+    columns = plot_columns(scenario, 5, 1)
+    np.testing.assert_array_equal(columns["t_s"].reshape(5, -1), scenario.time.T[[0, 1, 2, 0, 1]])
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "expected"),
+    [
+        ("{}", 11, "sampling must be a mapping"),
+        ("{jitters: 1}", 12, "unknown key in sampling: 'jitters'; did you mean 'jitter'? allowed: "
+         "jitter, alternate, burst, log-uniform, period"),
+        ("{jitter: 0.1, burst: [2, 5]}", 25, "sampling has 'jitter' already; it takes one of"),
+        ("{jitter: 0.7}", 20, "jitter must be a number > 0 and < 0.5, got 0.7"),
+        ("{jitter: often}", 20, "jitter must be a finite number, not 'often'"),
+        ("{alternate: [1]}", 23, "alternate must be two intervals > 0, got 1"),
+        ("{burst: [2.5, 5]}", 19, "burst must be a whole number of plots >= 2 and a gap > 1"),
+        ("{log-uniform: [10, 1]}", 25, "log-uniform must be two rising intervals > 0, got 10, 1"),
+        ("{period: -1}", 20, "period must be finite and > 0, got -1"),
+        ("{period: 2000}", 20, "period must leave two scans of a target of 1140 s, got 2000"),
+        ("{period: 1000}", 11, "the target has 2 scans; at least 3"),
+        ("{jitter: 0.1, period: 1e-3}", 33, "period must not give more than 10000000 scans"),
+    ],
+)  # fmt: skip
+def test_complaints_of_sampling(text, place, expected):
+    found = complaint(f"{HEAD}{TARGET}{SENSORS}sampling: {text}\n")
+    assert found.startswith(f"s.yaml:5:{place}: {expected}"), found
+
+
+def test_where_sampling_does_not_go(tmp_path):
+    text = f"{HEAD}{TARGET}{SENSORS}sampling: {{jitter: 0.1}}\nstart: interpolate\n"
+    assert complaint(text) == (
+        "s.yaml:6:8: start 'interpolate' needs times that are the same in all runs"
+    )
+    assert loads_scenario(text.replace("{jitter: 0.1}", "{period: 30}")).prepare_start
+    text = f"{HEAD}target: {{file: track.csv}}\n{SENSORS}sampling: {{period: 9}}\n"
+    assert complaint(text).startswith(
+        "s.yaml:5:11: sampling needs a target that is known at all times"
+    )
+    target = "target: {set: mixed, tracks: 9000}\n"
+    text = f"{HEAD}{target}{SENSORS}sampling: {{burst: [2, 5], period: 0.01}}\n"
+    assert complaint(text).startswith(
+        "s.yaml:5:35: period must not give more than 10000000 scans in all, got 0.01, which gives "
+        "5901 in each of 9000"
+    )
+
+
 # -------------------------------------------------------------------- sensors
 
 
@@ -164,6 +274,10 @@ def test_noise():
     text = "{sigma: [15, 23], correlation: 0.7, freedom: 5, detection: 0.9, clean: 2}"
     assert with_sensors(text) == PlotNoise((15.0, 23.0), Noise(0.7, 5.0), 0.9, 2)
     assert with_sensors("{sigma: 115}") == PlotNoise(115.0)
+    text = "{sigma: 1, factors: [1, 3], spread: 2, outliers: {factor: 9, share: 0.1}, told: 0.5}"
+    assert with_sensors(text) == PlotNoise(
+        1.0, factors=(1.0, 3.0), spread=2.0, outliers=(0.1, 9.0), told=0.5
+    )
     truth = llinas_maneuver("M1")[1]
     plots = with_sensors("{sigma: 115}").measure(truth, streams(1, 4))
     np.testing.assert_array_equal(plots.z, noisy_plots(truth, 115.0, streams(1, 4)).z)
@@ -234,7 +348,8 @@ def test_rule_bases_beside_the_scenario(tmp_path, monkeypatch):
         (
             f"{HEAD}{TARGET}sensor: {{sigma: 1}}\n",
             "s.yaml:4:1: unknown key in the scenario: 'sensor'; did you mean 'sensors'? allowed: "
-            "scenario, name, target, sensors, source, start, score, process_sigma, trackers",
+            "scenario, name, target, sensors, source, sampling, start, score, process_sigma, "
+            "trackers",
         ),
         (HEAD + SENSORS, "s.yaml:1:1: the scenario lacks the key 'target'"),
         (HEAD + TARGET, "s.yaml:1:1: the scenario lacks the key 'sensors'"),
@@ -362,11 +477,17 @@ FIELD = "reach: 1000, range_sigma: 10, bearing_sigma: 1"
         ("{sigma: [1, 0]}", 18, "sigma must be finite and > 0, got 0 at index 1"),
         ("{sigma: [1, 2, 3]}", 18, "sigma has 3 numbers, the target 2 axes"),
         ("{sigma: many}", 18, "sigma must be a finite number, not 'many'"),
+        ("{sigma: 5, spread: 0.5}", 29, "spread must be finite and >= 1, got 0.5"),
+        ("{sigma: 5, told: 0}", 27, "told must be finite and > 0, got 0"),
+        ("{sigma: 5, factors: [1, -2]}", 30, "factors must be finite and > 0, got -2 at index 1"),
+        ("{sigma: 5, outliers: 0.1}", 31, "outliers must be a mapping"),
+        ("{sigma: 5, outliers: {share: 0.1}}", 31, "outliers lacks the key 'factor'"),
+        ("{sigma: 5, outliers: {share: 2, factor: 3}}", 31, "outliers must be a share from 0 to 1"),
         (
             "{sigma: 5, corelation: 0.5}",
             21,
             "unknown key in sensors: 'corelation'; did you mean 'correlation'? allowed: sigma, "
-            "detection, clean, correlation, freedom",
+            "detection, clean, factors, spread, outliers, told, correlation, freedom",
         ),
         (
             "{variance: 5}",
