@@ -32,6 +32,7 @@ from fuzzytrack.gains.performance import (
     steady_error,
     transient_cost,
 )
+from fuzzytrack.gains.period import resampled_gains
 from fuzzytrack.gains.search import optimal_gains
 from fuzzytrack.gains.stability import (
     Region,
@@ -48,6 +49,7 @@ from fuzzytrack.gains.wdomain import (
     alpha_beta_from_w,
     alpha_beta_gamma_from_w,
     kalata_damping,
+    s_from_alpha_beta,
     w_from_alpha_beta,
     w_from_alpha_beta_gamma,
 )
@@ -90,6 +92,8 @@ __all__ = [
     "poles",
     "quality",
     "region",
+    "resampled_gains",
+    "s_from_alpha_beta",
     "steady_error",
     "steady_index",
     "to_abc",

@@ -8,8 +8,10 @@ filter its face c = -1 (Llinas et al. 1998, Eqs. 2.53 and 2.54).
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite
@@ -18,6 +20,7 @@ from fuzzytrack.gains.stability import discriminant, factored, pair_distances
 __all__ = ["abc_preimages", "from_abc", "to_abc"]
 
 Triple = tuple[Array, Array, Array]
+Number = TypeVar("Number", float, NDArray[np.float64])
 
 
 def from_abc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Triple:
@@ -138,8 +141,11 @@ def abc_preimages(alpha: ArrayLike, beta: ArrayLike, gamma: ArrayLike) -> Triple
 
 
 def gains_from_distance(a: Array, b: Array, delta: Array) -> Triple:
+    """`with_third_pole` for arrays that broadcast."""
+    alpha, beta, gamma = with_third_pole(*np.broadcast_arrays(a, b, delta))
+    return np.asarray(alpha), np.asarray(beta), np.asarray(gamma)
+
+
+def with_third_pole(a: Number, b: Number, delta: Number) -> tuple[Number, Number, Number]:
     """Eq. 2.54 without checks, with δ = 1 + c, which for slow filters has more digits than c."""
-    a, b, delta = np.broadcast_arrays(a, b, delta)
-    alpha = np.asarray(a + delta * (1 - a))
-    beta = np.asarray(a * delta + b * (1 - delta / 2))
-    return alpha, beta, np.asarray(2 * b * delta)
+    return a + delta * (1.0 - a), a * delta + b * (1.0 - 0.5 * delta), 2.0 * b * delta

@@ -306,6 +306,12 @@ def eigenfrequency(alpha: ArrayLike, beta: ArrayLike) -> Array:
 # ---------------------------------------------------------------- arithmetic, without checks
 
 
+def has_negative_pole(alpha: Array, beta: Array) -> Mask:
+    """Whether a real pole of an α-β filter is negative; it has no continuous-time counterpart."""
+    negative: Mask = (alpha > 1) | ((discriminant(alpha, beta) >= 0) & (alpha + beta > 2))
+    return negative
+
+
 def critical_curves(alpha: Array) -> tuple[Array, Array]:
     """β of the two critically damped curves, (1 ∓ √(1 - α))², for α <= 1 (Eq. 2.27)."""
     s = np.sqrt(1 - alpha)

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.abc_space import gains_from_distance
-from fuzzytrack.gains.checks import nonnegative, positive, stable_gains
-from fuzzytrack.gains.stability import factored
+from fuzzytrack.gains.checks import nonnegative, positive, stable_gains, within
+from fuzzytrack.gains.stability import critical_curves, factored, has_negative_pole, pair_distances
 
 __all__ = [
     "alpha_beta_from_s",
@@ -23,6 +23,7 @@ __all__ = [
     "alpha_beta_gamma_from_w",
     "bilinear",
     "kalata_damping",
+    "s_from_alpha_beta",
     "w_from_alpha_beta",
     "w_from_alpha_beta_gamma",
 ]
@@ -285,6 +286,51 @@ def alpha_beta_from_s(omega0: ArrayLike, zeta: ArrayLike, dt: ArrayLike) -> tupl
     real = np.expm1(-angle * fast) * np.expm1(-angle / np.maximum(fast, 1))
     beta = np.where(damping > 1, real, complex_)
     return alpha[()], beta[()]
+
+
+def s_from_alpha_beta(alpha: ArrayLike, beta: ArrayLike, dt: ArrayLike) -> tuple[Array, Array]:
+    """Continuous system whose poles, sampled with z = exp(sT), are those of the gains.
+
+    Parameters
+    ----------
+    alpha, beta : array_like
+        Stable gains, α < 1, without a negative real pole: β < (1 + √(1 - α))²; they broadcast.
+    dt : array_like
+        Sampling time T, s, > 0.
+
+    Returns
+    -------
+    omega0, zeta : ndarray
+        Undamped natural frequency, rad/s, and damping ratio, of the broadcast shape (numbers for
+        numbers); the inverse of `alpha_beta_from_s`, of whose frequencies it is the lowest.
+
+    Raises
+    ------
+    ValueError
+        If a pair is not stable or has a pole that is 0 or negative: no continuous system has it.
+
+    Notes
+    -----
+    With s = ln(z)/T: 2ζω₀T = -ln(1 - α) and, of complex poles, ω₀T√(1 - ζ²) is their angle.
+
+    Examples
+    --------
+    >>> print("{:.6f} {:.6f}".format(*s_from_alpha_beta(0.568289, 0.236416, dt=30)))
+    0.020000 0.700000
+    """
+    step = positive("dt", dt)
+    a, b, _ = stable_gains(alpha, beta)
+    within("alpha", a, a < 1, "< 1, so that no pole is 0 or negative")
+    negative = has_negative_pole(a, b)
+    within("beta", b, ~negative, "< (1 + sqrt(1 - alpha))^2, so that no real pole is negative")
+    lower, upper = critical_curves(a)
+    low, high, _ = pair_distances(a, b)
+    angle = 2 * np.arctan2(np.sqrt(np.maximum(b - lower, 0)), np.sqrt(np.maximum(upper - b, 0)))
+    decay = -np.log1p(-a) / 2
+    real = b <= lower
+    slow, fast = (-np.log1p(-np.where(real, distance, 0)) for distance in (low, high))
+    frequency = np.where(real, np.sqrt(slow * fast), np.hypot(decay, angle))
+    return np.asarray(frequency / step)[()], np.asarray(decay / frequency)[()]
 
 
 def _frequency_and_damping(a: Array, b: Array) -> tuple[Array, Array]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from fuzzytrack.gains import design
-from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
+from fuzzytrack.schedulers.base import GainScheduler, Kernel, schedulers
+from fuzzytrack.schedulers.constant_gains import checked_period, constant_kernel
 
 __all__ = ["BenedictBordner"]
 
@@ -20,11 +21,15 @@ class BenedictBordner(GainScheduler):
     ----------
     alpha : float
         Position gain, 0 < α < 4 - 2√2 = 1.1716. The authors use 0.05 or 0.01.
+    period : float, optional
+        Sampling time to which the gains belong (s). At other time steps the tracker uses the gains
+        of the same filter in continuous time, see `fuzzytrack.gains.resampled_gains`. Without it
+        the gains are the same whatever the time step.
 
     Raises
     ------
     ValueError
-        If `alpha` is out of range.
+        If `alpha` is out of range (with a `period` it is at most 1), or `period` is not positive.
 
     Notes
     -----
@@ -35,10 +40,13 @@ class BenedictBordner(GainScheduler):
     uses_acceleration = False
 
     alpha: float
+    period: float | None = None
 
     def __post_init__(self) -> None:
         design.benedict_bordner(self.alpha)
         object.__setattr__(self, "alpha", float(self.alpha))
+        gains = (self.alpha, self.beta, 0.0)
+        object.__setattr__(self, "period", checked_period(self.period, gains))
 
     @property
     def beta(self) -> float:
@@ -47,11 +55,4 @@ class BenedictBordner(GainScheduler):
 
     def kernel(self, n_axes: int) -> Kernel:
         """Constant gains; see `GainScheduler.kernel`."""
-        alpha, beta = self.alpha, self.beta
-
-        def benedict_bordner(
-            innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
-        ) -> tuple[float, float, float, float, Memory]:
-            return alpha, beta, 0.0, 1.0, memory
-
-        return benedict_bordner
+        return constant_kernel((self.alpha, self.beta, 0.0), self.period)

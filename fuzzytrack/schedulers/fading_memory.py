@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from fuzzytrack.gains import convert_gamma, design
-from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
+from fuzzytrack.schedulers.base import GainScheduler, Kernel, schedulers
+from fuzzytrack.schedulers.constant_gains import checked_period, constant_kernel
 
 __all__ = ["FadingMemory"]
 
@@ -31,11 +32,15 @@ class FadingMemory(GainScheduler):
         stable, but not critically damped.
     order : {2, 3}
         2: α-β. 3: α-β-γ.
+    period : float, optional
+        Sampling time to which the gains belong (s). At other time steps the tracker uses the gains
+        of the same filter in continuous time, see `fuzzytrack.gains.resampled_gains`. Without it
+        the gains are the same whatever the time step.
 
     Raises
     ------
     ValueError
-        If a parameter is out of range or unknown.
+        If a parameter is out of range or unknown, or with a `period` a real pole is negative.
 
     Notes
     -----
@@ -54,6 +59,7 @@ class FadingMemory(GainScheduler):
     xi: float
     convention: str = "mahafza"
     order: int = 3
+    period: float | None = None
 
     def __post_init__(self) -> None:
         if self.convention not in CONVENTIONS:
@@ -64,6 +70,7 @@ class FadingMemory(GainScheduler):
             raise ValueError(f"order must be 2 or 3, got {self.order!r}")
         design.fading_memory(self.xi)
         object.__setattr__(self, "xi", float(self.xi))
+        object.__setattr__(self, "period", checked_period(self.period, self.gains))
 
     @property
     def gains(self) -> tuple[float, float, float]:
@@ -77,11 +84,4 @@ class FadingMemory(GainScheduler):
 
     def kernel(self, n_axes: int) -> Kernel:
         """Constant gains; see `GainScheduler.kernel`."""
-        alpha, beta, gamma = self.gains
-
-        def fading_memory(
-            innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
-        ) -> tuple[float, float, float, float, Memory]:
-            return alpha, beta, gamma, 1.0, memory
-
-        return fading_memory
+        return constant_kernel(self.gains, self.period)

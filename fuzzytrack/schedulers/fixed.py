@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from fuzzytrack.gains.checks import finite, stable_gains
-from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
+from fuzzytrack.schedulers.base import GainScheduler, Kernel, schedulers
+from fuzzytrack.schedulers.constant_gains import checked_period, constant_kernel
 
 __all__ = ["FixedGains"]
 
@@ -14,7 +15,7 @@ __all__ = ["FixedGains"]
 @schedulers.register("fixed")
 @dataclass(frozen=True, repr=False)
 class FixedGains(GainScheduler):
-    """The same gains at every update.
+    """The same gains at every update, or those of the same filter at the time step of each.
 
     Parameters
     ----------
@@ -22,12 +23,17 @@ class FixedGains(GainScheduler):
         Position and velocity gains.
     gamma : float
         Acceleration gain, as γ/(2T²) (Llinas, Kalata); 0 gives an α-β filter.
+    period : float, optional
+        Sampling time to which the gains belong (s). At other time steps the tracker uses the gains
+        of the same filter in continuous time, see `fuzzytrack.gains.resampled_gains`. Without it
+        the gains are the same whatever the time step.
 
     Raises
     ------
     ValueError
         If a gain is not finite, or the filter would be unstable: stable are 0 < α < 2, β > 0,
-        2α + β < 4 and 0 <= γ < 4αβ/(2 - α).
+        2α + β < 4 and 0 <= γ < 4αβ/(2 - α). If `period` is not positive, or with it a real pole is
+        negative.
 
     Notes
     -----
@@ -40,11 +46,18 @@ class FixedGains(GainScheduler):
     alpha: float
     beta: float
     gamma: float = 0.0
+    period: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("alpha", "beta", "gamma"):
             object.__setattr__(self, name, float(finite(name, getattr(self, name))))
-        stable_gains(self.alpha, self.beta, self.gamma)
+        stable_gains(*self.gains)
+        object.__setattr__(self, "period", checked_period(self.period, self.gains))
+
+    @property
+    def gains(self) -> tuple[float, float, float]:
+        """α, β, γ."""
+        return self.alpha, self.beta, self.gamma
 
     @property
     def uses_acceleration(self) -> bool:  # type: ignore[override]
@@ -53,11 +66,4 @@ class FixedGains(GainScheduler):
 
     def kernel(self, n_axes: int) -> Kernel:
         """Constant gains; see `GainScheduler.kernel`."""
-        alpha, beta, gamma = self.alpha, self.beta, self.gamma
-
-        def fixed(
-            innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
-        ) -> tuple[float, float, float, float, Memory]:
-            return alpha, beta, gamma, 1.0, memory
-
-        return fixed
+        return constant_kernel(self.gains, self.period)

@@ -17,11 +17,12 @@ from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.gains.period import pair_after, pair_rates
 from fuzzytrack.normalizations import Normalization
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
-from fuzzytrack.schedulers.gain_outputs import GainOutputs
+from fuzzytrack.schedulers.gain_outputs import Conversion, GainOutputs
 from fuzzytrack.schedulers.growing_memory import least_squares_gains
-from fuzzytrack.schedulers.settings import SchedulerSettings, read_settings
+from fuzzytrack.schedulers.settings import SchedulerSettings, check_period, read_settings
 
 __all__ = ["FuzzyScheduler"]
 
@@ -44,12 +45,18 @@ class FuzzyScheduler(GainScheduler):
         to all its plots, as long as their α is larger than that of the rules.
     method : {"exact", "relation", "table"}
         As for `fuzzytrack.fuzzy.system.FuzzySystem`.
+    period : float, optional
+        Sampling time to which the gains of the rules belong (s); the setting ``period`` of the rule
+        base unless given. At other time steps the tracker uses the gains of the same filter in
+        continuous time, see `fuzzytrack.gains.resampled_gains`. With neither, the gains are
+        the same whatever the time step. An opening is not converted.
 
     Raises
     ------
     RuleBaseError
         If there is no such rule base; if a setting is missing or unknown, outputs and settings do
-        not fit, there are more inputs than signals, or the outputs reach unstable gains.
+        not fit, there are more inputs than signals, or the outputs reach unstable gains. With a
+        period also if it is not positive, or the outputs give γ or reach a negative real pole.
     TypeError
         If `rules` is something else.
     ValueError
@@ -65,14 +72,24 @@ class FuzzyScheduler(GainScheduler):
 
     rules: RuleBase
     method: str = "exact"
+    period: float | None = None
     settings: SchedulerSettings = field(init=False, repr=False, compare=False)
 
-    def __init__(self, rules: RuleBase | str | os.PathLike[str], method: str = "exact") -> None:
+    def __init__(
+        self,
+        rules: RuleBase | str | os.PathLike[str],
+        method: str = "exact",
+        period: float | None = None,
+    ) -> None:
         rules = as_rulebase(rules)
         object.__setattr__(self, "rules", rules)
         object.__setattr__(self, "method", method)
         object.__setattr__(self, "settings", read_settings(rules))
         _check_range(self.rules)
+        object.__setattr__(self, "period", self.settings.period)
+        if period is not None:
+            object.__setattr__(self, "period", float(period))
+            check_period(rules, self.outputs, float(period))
         _never_silent(self.rules, self.system)
         # Made here, since not every rule base can be compiled.
         _ = self.inference
@@ -146,14 +163,14 @@ class FuzzyScheduler(GainScheduler):
         """Normalize, infer, convert to gains; see `GainScheduler.kernel`."""
         normalize = self.normalization.kernel(n_axes)
         infer = self.inference
-        to_gains = self.outputs.conversion(self.rules.output_names)
+        to_gains = _at_time_step(self.outputs.conversion(self.rules.output_names), self.period)
         feedback = self.normalization.feedback(n_axes) or _unchanged
 
         def schedule(
             innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
         ) -> tuple[float, float, float, float, Memory]:
             signals, own = normalize(innovation, change, dt, sigma, memory)
-            alpha, beta, gamma, retention = to_gains(infer(signals))
+            alpha, beta, gamma, retention = to_gains(infer(signals), dt)
             own = feedback(own, alpha, beta, gamma, dt, sigma)
             return alpha, beta, gamma, retention, own
 
@@ -170,7 +187,7 @@ class FuzzyScheduler(GainScheduler):
             count = memory[0] + 1.0 if seen else memory[0]
             before = memory[1:]
             signals, own = normalize(innovation, change, dt, sigma, before)
-            alpha, beta, gamma, retention = to_gains(infer(signals))
+            alpha, beta, gamma, retention = to_gains(infer(signals), dt)
             first_alpha, first_beta = least_squares_gains(count if count > 2.0 else 2.0)
             # α and β from the same source: those of different ones need not be stable together.
             opening = first_alpha > alpha
@@ -182,6 +199,28 @@ class FuzzyScheduler(GainScheduler):
             return alpha, beta, gamma, retention, (count, *own)
 
         return open_and_schedule
+
+
+def _at_time_step(
+    to_gains: Conversion, period: float | None
+) -> Callable[[tuple[float, ...], float], tuple[float, float, float, float]]:
+    """Conversion of outputs to the gains at a time step, if they belong to a period."""
+    if period is None:
+
+        def at_any(outputs: tuple[float, ...], dt: float) -> tuple[float, float, float, float]:
+            return to_gains(outputs)
+
+        return at_any
+
+    designed_at = period
+
+    def at_time_step(outputs: tuple[float, ...], dt: float) -> tuple[float, float, float, float]:
+        alpha, beta, gamma, retention = to_gains(outputs)
+        new_alpha, new_beta = pair_after(pair_rates(alpha, beta), dt / designed_at)
+        given = dt == designed_at
+        return alpha if given else new_alpha, beta if given else new_beta, gamma, retention
+
+    return at_time_step
 
 
 def _unchanged(

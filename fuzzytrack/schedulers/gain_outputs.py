@@ -16,7 +16,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, bilinear, kalata_damping
 
-__all__ = ["GAIN_SETTINGS", "GainOutputs", "choices", "find_gain_outputs", "gains_of"]
+__all__ = ["GAIN_SETTINGS", "Conversion", "GainOutputs", "choices", "find_gain_outputs", "gains_of"]
 
 #: From the outputs, in the order of the rule base, to (α, β, γ, retention of acceleration).
 Conversion = Callable[[tuple[float, ...]], tuple[float, float, float, float]]

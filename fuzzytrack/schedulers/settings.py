@@ -6,11 +6,15 @@ The fuzzy engine does not interpret the settings; it keeps each word with its pl
 from __future__ import annotations
 
 import inspect
+import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.gains.period import poles_in_time
 from fuzzytrack.normalizations import Normalization, normalizations
 from fuzzytrack.schedulers.gain_outputs import (
     GAIN_SETTINGS,
@@ -20,9 +24,16 @@ from fuzzytrack.schedulers.gain_outputs import (
 )
 from fuzzytrack.yamltree import is_number, suggestion
 
-__all__ = ["KEYS", "OPENINGS", "SchedulerSettings", "read_settings", "scheduler_schema"]
+__all__ = [
+    "KEYS",
+    "OPENINGS",
+    "SchedulerSettings",
+    "check_period",
+    "read_settings",
+    "scheduler_schema",
+]
 
-KEYS = ("normalization", "gains", "opening")
+KEYS = ("normalization", "gains", "opening", "period")
 OPENINGS = ("growing-memory",)
 
 _DESCRIPTIONS = {
@@ -30,6 +41,7 @@ _DESCRIPTIONS = {
     "gains": f"What the outputs are: {', '.join(GAIN_SETTINGS[:-1])} or {GAIN_SETTINGS[-1]}.",
     "opening": f"Gains of a new track: {OPENINGS[0]}. Without it, those of the rules.",
 }
+_PERIOD = "Sampling time to which the gains belong (s). Without it they are used at any time step."
 
 
 @dataclass(frozen=True)
@@ -44,11 +56,14 @@ class SchedulerSettings:
         Makes gains of its outputs.
     opens : bool
         Whether a new track has the gains of a growing memory first.
+    period : float or None
+        Sampling time to which the gains of the rules belong (s); None if they are used at any.
     """
 
     normalization: Normalization
     outputs: GainOutputs
     opens: bool
+    period: float | None
 
 
 def read_settings(rules: RuleBase) -> SchedulerSettings:
@@ -72,7 +87,42 @@ def read_settings(rules: RuleBase) -> SchedulerSettings:
     opening = settings.get("opening")
     if opening is not None and opening not in OPENINGS:
         raise _unknown("opening", opening, OPENINGS)
-    return SchedulerSettings(normalization, outputs, opening is not None)
+    period = _period(rules, outputs, settings.get("period"))
+    return SchedulerSettings(normalization, outputs, opening is not None, period)
+
+
+def check_period(
+    rules: RuleBase, outputs: GainOutputs, period: float, place: Location | None = None
+) -> None:
+    """Raise RuleBaseError unless the gains of a rule base can belong to a sampling time.
+
+    Parameters
+    ----------
+    rules : RuleBase
+    outputs : GainOutputs
+        Conversion of its outputs to gains.
+    period : float
+        Sampling time (s).
+    place : Location, optional
+        Where it stands in the file.
+    """
+    if not 0 < period < math.inf:
+        raise RuleBaseError(f"period must be positive and finite (s), got {period:g}", place)
+    if "gamma" in outputs.gain_names:
+        raise RuleBaseError(
+            f"period: {rules.name} gives gamma; only alpha and beta can be converted to another "
+            "sampling time at every plot",
+            place,
+        )
+    # Real poles become negative where the outputs are large: so at their upper limits, if anywhere.
+    highest = {name: np.array(rules.output(name).universe.high) for name in outputs.names}
+    try:
+        poles_in_time(**outputs.gains(highest))
+    except ValueError as error:
+        limits = ", ".join(f"{name}={float(value):g}" for name, value in highest.items())
+        raise RuleBaseError(
+            f"period: at {limits}, the upper limits of the universes, {error}", place
+        ) from error
 
 
 def scheduler_schema() -> dict[str, Any]:
@@ -83,7 +133,8 @@ def scheduler_schema() -> dict[str, Any]:
         "properties": {
             key: {"description": text, "type": "string", "minLength": 1}
             for key, text in _DESCRIPTIONS.items()
-        },
+        }
+        | {"period": {"description": _PERIOD, "type": "number", "exclusiveMinimum": 0}},
         "required": [],
         "additionalProperties": {
             "description": "A number that the normalization takes, by its name.",
@@ -159,6 +210,18 @@ def _normalization(settings: dict[str, str]) -> Normalization:
         places = [_location(settings[key]) for key in numbers if key in str(error)]
         raise RuleBaseError(str(error), places[0] if places else _location(name)) from error
     return made
+
+
+def _period(rules: RuleBase, outputs: GainOutputs, word: str | None) -> float | None:
+    if word is None:
+        return None
+    if not is_number(word):
+        raise RuleBaseError(
+            f"period must be a number of seconds, got {str(word)!r}", _location(word)
+        )
+    period = float(word)
+    check_period(rules, outputs, period, _location(word))
+    return period
 
 
 def _enough_signals(rules: RuleBase, normalization: Normalization, name: str) -> None:

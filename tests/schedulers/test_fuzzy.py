@@ -8,6 +8,7 @@ import fuzzytrack as ft
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.variable import Universe, Variable
+from fuzzytrack.gains import resampled_gains
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.normalizations.chan import Chan
 from fuzzytrack.testing import check_scheduler
@@ -101,7 +102,7 @@ def test_unstable_reach_is_refused(rules):
             "w-domain}",
             "w-domain, rho: 0.5}",
             "unknown scheduler setting 'rho' for normalization 'chan'; allowed: normalization, "
-            "gains, opening",
+            "gains, opening, period",
         ),
         (
             "chan, gains: w-domain}",
@@ -113,6 +114,8 @@ def test_unstable_reach_is_refused(rules):
             "smoothed, gains: w-domain, rho: 1.5}",
             "rho must be >= 0 and < 1, got 1.5",
         ),
+        ("w-domain}", "w-domain, period: soon}", "period must be a number of seconds, got 'soon'"),
+        ("w-domain}", "w-domain, period: 0}", "period must be positive and finite .*, got 0"),
     ],
 )
 def test_wrong_settings_are_shown_where_they_stand(rules, old, new, message):
@@ -160,7 +163,7 @@ def test_unknown_keys_are_shown_where_they_stand(rules, settings, word):
     wrong = changed(rules, "{normalization: chan, gains: w-domain}", settings)
     with pytest.raises(ft.RuleBaseError, match=f"unknown scheduler setting '{word}'") as caught:
         ft.FuzzyScheduler(wrong)
-    assert "allowed: normalization, gains, opening" in str(caught.value)
+    assert "allowed: normalization, gains, opening, period" in str(caught.value)
     assert caught.value.location.file == "my.yaml"
     line = dumps_rulebase(wrong).splitlines()[caught.value.location.line - 1]
     assert line[caught.value.location.column - 1 :].startswith(word)
@@ -269,3 +272,54 @@ def test_scaled_innovations_need_sigma(rules):
     rough = tracker.run(np.arange(4), [0, 10, 19, 31], sigma=1e6)
     # Innovations far below the noise are zero error: the largest gains of the table
     assert rough.gains.alpha[2:] == pytest.approx(0.71383558, abs=1e-4)
+
+
+# ------------------------------------------------------------------ period
+
+
+def gains_at(scheduler, dt):
+    return scheduler.kernel(1)(3.0, -10.0, dt, 1.0, scheduler.initial_memory(1))[:2]
+
+
+@pytest.mark.parametrize("name", ["stiffness-damping", "omega-schedule"])
+def test_with_a_period_gains_are_those_of_the_same_filter_at_the_time_step(name):
+    rules = ft.load_rulebase(name)
+    rules = replace(rules, scheduler=tuple(s for s in rules.scheduler if s[0] != "opening"))
+    given = gains_at(ft.FuzzyScheduler(rules), 1.0)
+    scheduler = ft.FuzzyScheduler(rules, period=30)
+    assert gains_at(scheduler, 30.0) == given
+    for dt in (0.2, 31.0, 400.0):
+        expected = resampled_gains(*given, period=30.0, dt=dt)[:2]
+        assert gains_at(scheduler, dt) == pytest.approx(expected, rel=1e-11)
+
+
+def test_the_period_is_a_setting_that_an_argument_overrides(rules):
+    with_period = changed(rules, "w-domain}", "w-domain, period: 60}")
+    assert ft.FuzzyScheduler(with_period).period == 60
+    assert ft.FuzzyScheduler(with_period, period=4).period == 4
+    assert ft.FuzzyScheduler(rules).period is None
+    assert ft.FuzzyScheduler(with_period) == ft.FuzzyScheduler(with_period, period=60)
+    assert ft.loads_rulebase(dumps_rulebase(with_period)) == with_period
+    tracker = ft.AlphaBetaTracker("stiffness-damping:period=60")
+    assert tracker.scheduler == ft.FuzzyScheduler(rules, period=60)
+    with pytest.raises(ft.RuleBaseError, match="period must be positive and finite"):
+        ft.FuzzyScheduler(rules, period=np.inf)
+
+
+def test_the_opening_is_not_converted():
+    rules = ft.load_rulebase("omega-schedule")
+    scheduler = ft.FuzzyScheduler(rules, period=1000)
+    gains = scheduler.kernel(1)(0.0, 0.0, 1.0, 1.0, (2.0, *scheduler.initial_memory(1)[1:]))[:2]
+    assert gains == pytest.approx((5 / 6, 1 / 2))
+
+
+def test_a_period_is_refused_where_a_pole_may_be_real_and_negative(rules):
+    wide = changed(ft.load_rulebase("stiffness-damping-wide"), "w-domain}", "w-domain, period: 60}")
+    with pytest.raises(ft.RuleBaseError, match=r"period: at stiffness=0.8, damping=1.3") as caught:
+        ft.FuzzyScheduler(wide)
+    line = dumps_rulebase(wide).splitlines()[caught.value.location.line - 1]
+    assert line[caught.value.location.column - 1 :] == "60}"
+    assert "gains with a negative real pole" in str(caught.value)
+    assert ft.FuzzyScheduler("chan-style", period=4).period == 4
+    with pytest.raises(ft.RuleBaseError, match="gives gamma; only alpha and beta"):
+        ft.FuzzyScheduler(with_gamma(rules), period=4)
