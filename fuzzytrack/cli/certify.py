@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import Annotated
 
 import typer
@@ -11,6 +12,9 @@ from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, say, show
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.gains.certificate import Certificate
+from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.plurals import counted
 from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
 from fuzzytrack.schedulers.reachable_gains import sequence_steps
 
@@ -27,68 +31,136 @@ def certify(
             "all between the conclusions of single rules.",
         ),
     ] = "universe",
+    steps: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LOW:HIGH",
+            help="Limits of the time between rows, which may change from row to row. "
+            "[default: constant]",
+        ),
+    ] = None,
+    missed: Annotated[
+        int, typer.Option(metavar="N", help="Most plots that are missed in a row.")
+    ] = 0,
     json: options.Json = False,
 ) -> None:
     """Prove that the error shrinks for any order of gains, or show an order that makes it grow.
 
-    The gains of the rule base may switch from step to step in any way, not only as the rules choose
-    them.
+    The gains of the rule base may switch from plot to plot in any way, not only as the rules choose
+    them, and so may the time between plots within its limits.
     """
     rules = load_rulebase(name)
-    found = certify_gains(rules, reach=reach)
-    refuted = len(found.sequence) > 0
+    limits = None if steps is None else _limits(steps)
+    found = certify_gains(rules, reach=reach, steps=limits, missed=missed)
     sequence = sequence_steps(rules, found)
     if json:
         print_json(
             {
                 "rulebase": rules.name,
                 "reach": reach,
+                "steps": limits,
+                "missed": missed,
+                "covered": _covered(limits, missed),
                 "verdict": found.verdict,
                 "rate": found.rate,
                 "lyapunov": found.lyapunov,
+                "polygon": found.polygon,
                 "vertices": found.vertices,
                 "sequence": sequence,
-                "growth": found.growth if refuted else None,
-                "missed_plots_included": False,
+                "growth": found.growth,
             }
         )
         return
     say(f"{name}: {found.verdict}")
-    if refuted:
-        alone = all(theory.is_stable(step["alpha"], step["beta"]) for step in sequence)
-        say(
-            f"Among gains {_reached(rules, reach)}\n"
-            f"are these. Repeated in this order they make the error grow by a factor of "
-            f"{found.growth:.4f} a step,\nthough each by itself is "
-            f"{'stable' if alone else 'stable, or on the edge of stability'}:"
-        )
-        say()
-        heads = [key for key in ("stiffness", "damping", "alpha", "beta") if key in sequence[0]]
-        rows = [
-            [str(number), *(show(step[key]) for key in heads), f"{step['modulus']:.4f}"]
-            for number, step in enumerate(sequence, 1)
-        ]
-        print_table(["step", *heads, "largest pole"], rows)
-    elif found.verdict == "certified":
-        (_, x), (_, y) = found.lyapunov
-        say(
-            f"For gains {_reached(rules, reach)},\n"
-            f"in any order, the error shrinks at every step to {found.rate:.4f} of what it was, or "
-            "less.\nIts measure is √(eᵀPe), where e is the error of position and T times the error "
-            "of\nvelocity, and"
-        )
-        say()
-        say(f"  P = [{1:>9.4f} {x:>9.4f} ]")
-        say(f"      [{x:>9.4f} {y:>9.4f} ]")
-    else:
-        say(
-            f"For gains {_reached(rules, reach)},\n"
-            "in any order, no measure of the error was found that always shrinks (the best one may "
-            f"grow\nby a factor of {found.rate:.4f} a step), nor a sequence of gains that makes the"
-            " error grow."
-        )
+    say(f"Covered: {_covered(limits, missed)}.")
     say()
-    say("Missed plots, at which no correction is made, are not included.")
+    if found.verdict == "refuted":
+        _print_sequence(rules, reach, found, sequence)
+    elif found.verdict == "certified":
+        _print_norm(rules, reach, found)
+    else:
+        _paragraph(
+            f"For gains {_reached(rules, reach)}, in any order, no measure of the error was found "
+            f"that always shrinks (the best one may grow by a factor of {found.rate:.4f} a plot), "
+            "nor a sequence of gains that makes the error grow."
+        )
+
+
+def _paragraph(text: str) -> None:
+    say(fill(text, 80))
+
+
+def _limits(text: str) -> tuple[float, float]:
+    """Two times with a colon between them."""
+    try:
+        low, high = (float(part) for part in text.split(":"))
+    except ValueError:
+        raise ValueError(f"--steps: expected LOW:HIGH, two times, got {text!r}") from None
+    return low, high
+
+
+def _covered(limits: tuple[float, float] | None, missed: int) -> str:
+    """Times that a verdict is about."""
+    if limits is None:
+        time = "constant T"
+    else:
+        time = f"time between rows in [{limits[0]:g}, {limits[1]:g}], changing in any way"
+    plots = f"up to {counted(missed, 'missed plot')} in a row" if missed else "no missed plots"
+    return f"{time}, {plots}"
+
+
+def _print_sequence(
+    rules: RuleBase, reach: str, found: Certificate, sequence: list[dict[str, float]]
+) -> None:
+    """Gains and times with which the error grows."""
+    alone = all(theory.is_stable(step["alpha"], step["beta"]) for step in sequence)
+    _paragraph(
+        f"Among gains {_reached(rules, reach)} are these. Repeated in this order they make the "
+        f"error grow by a factor of {found.growth:.4f} a plot, though each by itself, at constant "
+        f"T, is {'stable' if alone else 'stable, or on the edge of stability'}:"
+    )
+    say()
+    heads = [key for key in ("stiffness", "damping", "alpha", "beta") if key in sequence[0]]
+    varies = found.times != ElapsedTimes()
+    rows = [
+        [
+            str(number),
+            *([show(step["elapsed"]), f"{step['missed']:.0f}"] if varies else []),
+            *(show(step[key]) for key in heads),
+            f"{step['modulus']:.4f}",
+        ]
+        for number, step in enumerate(sequence, 1)
+    ]
+    times = ["time", "missed"] if varies else []
+    print_table(["plot", *times, *heads, "largest pole"], rows)
+    if varies:
+        say()
+        say("time: since the last plot; missed: plots missed meanwhile.")
+
+
+def _print_norm(rules: RuleBase, reach: str, found: Certificate) -> None:
+    """The norm that every plot reduces."""
+    _paragraph(
+        f"For gains {_reached(rules, reach)}, in any order, the error shrinks at every plot to "
+        f"{found.rate:.4f} of what it was, or less."
+    )
+    say()
+    unit = "T" if found.times.low == found.times.high else f"{found.times.low:g}"
+    error = (
+        f"e is the error of the position predicted for a time {unit} after a plot, and {unit} "
+        "times the error of the velocity"
+    )
+    if len(found.polygon):
+        _paragraph(
+            f"Its measure is 1 on a polygon of {len(found.polygon)} corners, which --json prints; "
+            f"{error}."
+        )
+        return
+    (_, x), (_, y) = found.lyapunov
+    _paragraph(f"Its measure is √(eᵀPe), where {error}, and")
+    say()
+    say(f"  P = [{1:>9.4f} {x:>9.4f} ]")
+    say(f"      [{x:>9.4f} {y:>9.4f} ]")
 
 
 def _reached(rules: RuleBase, reach: str) -> str:

@@ -1,21 +1,28 @@
-"""Certified stability of scheduled gains that switch in any order.
+"""Certified stability of scheduled gains that switch in any order, at any of a range of times.
 
-A filter whose gains are stable one by one may still diverge when they change from step to step.
-At each step the error of an α-β filter is multiplied by a matrix that is affine in the gains. So a
-quadratic function that decreases for the gains at the corners of a set decreases for all gains
-inside, in any order: a common Lyapunov function. If none is found, the search is for a sequence of
-gains with which the error grows.
+A filter whose gains are stable one by one may still diverge when they change from plot to plot, or
+when the time between plots changes. At each plot the error of an α-β filter is multiplied by a
+matrix that is affine in the gains, and affine in s and 1/s, s the time since the last plot. So a
+norm of the error that decreases for the gains at the corners of a set, at the corners of a polygon
+around the curve (s, 1/s), decreases for all gains and times inside, in any order. Such a norm is a
+certificate: one of an ellipse (a common quadratic Lyapunov function) or else of a polygon. If none
+is found, the search is for a sequence of gains and times with which the error grows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.gains.growing_sequence import growing_sequence
+from fuzzytrack.gains.lyapunov import common_lyapunov
+from fuzzytrack.gains.polygon_norm import ellipse, polygon_norm, reducing_polygon
 from fuzzytrack.reprs import summary
 
 __all__ = [
@@ -32,58 +39,97 @@ __all__ = [
 #: Rates this close to 1 cannot be distinguished from 1 in floating point.
 _MARGIN = 1e-9
 _SEARCH_VERTICES = 24
-_BEAM = 400
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
     """Result of the stability check of a set of gains under arbitrary switching.
 
+    The error is (position error, U times velocity error), as predicted for a time U after a plot. U
+    is the shortest step.
+
     Attributes
     ----------
     verdict : {"certified", "refuted", "not decided"}
-        ``certified``: the error contracts for any gains in the set, in any order. ``refuted``: a
-        sequence of gains was found with which it grows. ``not decided``: neither was shown.
+        ``certified``: the error contracts for any gains in the set and any times, in any order.
+        ``refuted``: a sequence of gains and times was found with which it grows. ``not decided``:
+        neither was shown.
     rate : float
-        Contraction of the Lyapunov function's root per step, the best one found; below 1 if and
-        only if certified.
+        Largest factor by which a plot multiplies `norm` of the error, for the best norm found;
+        below 1 if and only if certified.
     lyapunov : ndarray, shape (2, 2)
-        Its matrix P, in coordinates (position error, T times velocity error), with P[0, 0] = 1.
+        The P of the best norm of the form √(eᵀPe), with P[0, 0] = 1.
     vertices : ndarray, shape (n, 2)
         Gains (α, β) whose convex hull holds the set.
+    times : ElapsedTimes
+        Times between plots that are covered.
+    polygon : ndarray, shape (k, 2)
+        Corners of the unit ball of `norm` where an ellipse does not do; otherwise empty.
     sequence : ndarray, shape (length, 2)
         Gains which, repeated in this order, make the error grow; empty unless refuted.
+    elapsed : ndarray, shape (length,)
+        Times since the last plot that go with them.
     growth : float
-        Growth of the error per step with that sequence; NaN unless refuted.
+        Growth of the error per plot with that sequence; NaN unless refuted.
     """
 
     verdict: str
     rate: float
     lyapunov: Array
     vertices: Array
-    sequence: Array
-    growth: float
+    times: ElapsedTimes
+    polygon: Array = field(default_factory=lambda: np.empty((0, 2)))
+    sequence: Array = field(default_factory=lambda: np.empty((0, 2)))
+    elapsed: Array = field(default_factory=lambda: np.empty(0))
+    growth: float = math.nan
 
     def __repr__(self) -> str:
-        return summary(self, "verdict", "rate", "growth", "vertices", "sequence")
+        return summary(self, "verdict", "rate", "growth", "vertices", "times", "sequence")
+
+    def norm(self, error: ArrayLike) -> Array:
+        """Norm of the error that the certificate is about.
+
+        Parameters
+        ----------
+        error : array_like, shape (..., 2)
+
+        Returns
+        -------
+        ndarray, shape (...)
+        """
+        e = np.asarray(error, dtype=np.float64)
+        if len(self.polygon):
+            return polygon_norm(e, self.polygon)
+        return np.asarray(np.sqrt(np.einsum("...i,ij,...j", e, self.lyapunov, e)))
 
 
-def error_matrix(alpha: ArrayLike, beta: ArrayLike) -> Array:
-    """Matrix by which one update multiplies the prediction error (x, T v) of an α-β filter.
+def error_matrix(alpha: ArrayLike, beta: ArrayLike, elapsed: ArrayLike = 1.0) -> Array:
+    """Matrix by which a plot multiplies the error (x, U v) of an α-β filter.
+
+    It is the error as predicted for a time U after a plot: with constant T = U, the prediction
+    error.
 
     Parameters
     ----------
     alpha, beta : array_like
-        Gains; they broadcast.
+        Gains.
+    elapsed : array_like
+        Time since the last plot, in units of U. All arguments broadcast.
 
     Returns
     -------
     ndarray, shape (..., 2, 2)
-        [[1 - α - β, 1], [-β, 1]].
+        F(1) (I - K H) F(s) F(1)⁻¹ with K = (α, β/s); [[1 - α - β, 1], [-β, 1]] at s = 1.
     """
-    a, b = np.broadcast_arrays(np.asarray(alpha, float), np.asarray(beta, float))
-    one = np.ones_like(a)
-    return np.stack([np.stack([1 - a - b, one], -1), np.stack([-b, one], -1)], -2)
+    s = np.asarray(elapsed, dtype=np.float64)
+    return _error_matrix(np.asarray(alpha, float), np.asarray(beta, float), s, 1 / s)
+
+
+def _error_matrix(alpha: Array, beta: Array, s: Array, inverse: Array) -> Array:
+    """The same with 1/s as an argument of its own, in which the matrix is affine."""
+    a, b, s, r = np.broadcast_arrays(alpha, beta, s, inverse)
+    top = np.stack([1 - a - b * r, (1 - a) * (s - 1) + 1 - b * (1 - r)], -1)
+    return np.stack([top, np.stack([-b * r, 1 - b * (1 - r)], -1)], -2)
 
 
 def box(stiffness: tuple[float, float], damping: tuple[float, float]) -> Array:
@@ -148,7 +194,9 @@ def polygon_in_gains(corners: ArrayLike, pieces: int = 32) -> tuple[Array, Array
     return around, np.unique(points[[0, 2]].reshape(-1, 2), axis=0)
 
 
-def certify_region(corners: ArrayLike, max_length: int = 8) -> Certificate:
+def certify_region(
+    corners: ArrayLike, max_length: int = 48, *, times: ElapsedTimes | None = None
+) -> Certificate:
     """Certify all gains of a convex polygon of stiffness and damping; see `certify`.
 
     Parameters
@@ -157,6 +205,8 @@ def certify_region(corners: ArrayLike, max_length: int = 8) -> Certificate:
         (stiffness, damping), in order; `box` returns those of a box.
     max_length : int
         Longest sequence of gains tried as a counter-example.
+    times : ElapsedTimes, optional
+        Times between plots; constant, and no plot missed, unless given.
 
     Returns
     -------
@@ -169,13 +219,17 @@ def certify_region(corners: ArrayLike, max_length: int = 8) -> Certificate:
     ('certified', 0.816)
     """
     around, reached = polygon_in_gains(corners)
-    return certify(around, max_length, reached=reached)
+    return certify(around, max_length, reached=reached, times=times)
 
 
 def certify(
-    gains: ArrayLike, max_length: int = 8, *, reached: ArrayLike | None = None
+    gains: ArrayLike,
+    max_length: int = 48,
+    *,
+    reached: ArrayLike | None = None,
+    times: ElapsedTimes | None = None,
 ) -> Certificate:
-    """Certify a set of α-β gains that may switch arbitrarily from step to step.
+    """Certify a set of α-β gains that may switch arbitrarily from plot to plot.
 
     Parameters
     ----------
@@ -187,6 +241,8 @@ def certify(
     reached : array_like, shape (m, 2), optional
         Gains that certainly belong to the set; counter-examples are made of them. `gains` unless
         given.
+    times : ElapsedTimes, optional
+        Times between plots; constant, and no plot missed, unless given.
 
     Returns
     -------
@@ -199,15 +255,22 @@ def certify(
 
     Notes
     -----
-    The rate minimizes the largest eigenvalue of P⁻¹FᵀPF over the vertices, a quasi-convex problem
-    in two unknowns. The counter-example is a product of vertex matrices with spectral radius above
-    1, found by a beam search, and is an explicit proof; if the search finds none, nothing is
-    proved. Missed plots (α = β = 0) lie outside of every certificate.
+    The matrix of a plot is affine in (α, β) for a fixed (s, 1/s), and affine in (s, 1/s) for fixed
+    gains. So it is a convex combination of the matrices of the corners of both sets, and a norm of
+    it is at most the largest norm of those: finitely many matrices prove the bound for all, without
+    a grid. The curve (s, 1/s) is enclosed in a polygon, see `ElapsedTimes.around`.
+
+    First the best quadratic norm is sought (`fuzzytrack.gains.lyapunov`). If it does not decrease,
+    a beam search looks for a product of matrices with a spectral radius above 1, which is an
+    explicit proof of the contrary. If there is none either, a polygon is sought that all matrices
+    reduce (`fuzzytrack.gains.polygon_norm`), which exists wherever all products of them go to zero.
 
     Examples
     --------
     >>> certify([[0.5377, 0.2018], [0.7, 0.28]]).verdict
     'certified'
+    >>> certify([[0.5377, 0.2018]], times=ElapsedTimes(1, 10)).verdict
+    'refuted'
     """
     points = np.asarray(gains, dtype=np.float64)
     if points.ndim != 2 or points.shape[-1] != 2 or not len(points):
@@ -216,21 +279,34 @@ def certify(
         raise ValueError("gains must be finite numbers")
     if max_length < 1:
         raise ValueError(f"max_length must be at least 1, got {max_length}")
+    times = times or ElapsedTimes()
     vertices = convex_hull(points)
-    matrices = error_matrix(vertices[:, 0], vertices[:, 1])
-    rate, lyapunov = _best_lyapunov(matrices)
-    nothing = np.empty((0, 2))
+    alpha, beta = vertices.T
+    s, inverse = times.around().T
+    matrices = _error_matrix(
+        alpha[:, None], beta[:, None], s / times.low, inverse * times.low
+    ).reshape(-1, 2, 2)
+    rate, lyapunov = common_lyapunov(matrices)
+    found = partial(Certificate, lyapunov=lyapunov, vertices=vertices, times=times)
     if rate < 1 - _MARGIN:
-        return Certificate("certified", rate, lyapunov, vertices, nothing, np.nan)
-    candidates = vertices
-    if reached is not None:
-        candidates = convex_hull(np.asarray(reached, dtype=np.float64))
-    candidates = candidates[_spread(candidates)]
-    order, growth = _growing_sequence(error_matrix(*candidates.T), lyapunov, max_length)
+        return found("certified", rate)
+    known = vertices if reached is None else convex_hull(np.asarray(reached, dtype=np.float64))
+    gains_tried, times_tried = _pairs(known[_spread(known)], times.tried())
+    tried = error_matrix(gains_tried[:, 0], gains_tried[:, 1], times_tried / times.low)
+    order, growth = growing_sequence(tried, lyapunov, max_length)
     if growth > 1 + _MARGIN:
-        sequence = candidates[list(order)]
-        return Certificate("refuted", rate, lyapunov, vertices, sequence, growth)
-    return Certificate("not decided", rate, lyapunov, vertices, nothing, np.nan)
+        sequence, elapsed = gains_tried[order], times_tried[order]
+        return found("refuted", rate, sequence=sequence, elapsed=elapsed, growth=growth)
+    # The rate, if there is one below 1, is between the growth that was found and 1.
+    polygon_rate, polygon = reducing_polygon(matrices, ellipse(lyapunov), (1 + growth) / 2)
+    if polygon_rate < 1 - _MARGIN:
+        return found("certified", polygon_rate, polygon=polygon)
+    return found("not decided", rate)
+
+
+def _pairs(gains: Array, times: Array) -> tuple[Array, Array]:
+    """Each pair of gains with each time."""
+    return np.repeat(gains, len(times), axis=0), np.tile(times, len(gains))
 
 
 def convex_hull(points: Array) -> Array:
@@ -246,40 +322,6 @@ def convex_hull(points: Array) -> Array:
         return unique[[0, -1]]
 
 
-def _largest_rate(matrices: Array, p: Array) -> float:
-    """√ of the largest eigenvalue of P⁻¹FᵀPF over all F: the contraction that P proves."""
-    factor = np.linalg.cholesky(p).T  # P = RᵀR
-    similar = factor @ matrices @ np.linalg.inv(factor)
-    return float(np.linalg.norm(similar, ord=2, axis=(-2, -1)).max())
-
-
-def _lyapunov_matrix(shape: Array) -> Array:
-    """P = [[1, -x], [-x, y]] from unconstrained numbers: x, and the logarithm of y - x²."""
-    x, log_excess = shape
-    return np.array([[1.0, -x], [-x, x * x + np.exp(log_excess)]])
-
-
-def _best_lyapunov(matrices: Array) -> tuple[float, Array]:
-    from scipy.optimize import minimize
-
-    def rate(shape: Array) -> float:
-        return _largest_rate(matrices, _lyapunov_matrix(shape))
-
-    best = None
-    for start in ((0.5, 0.0), (1.5, 1.0)):
-        # Not differentiable where two vertices are equally bad, hence a simplex method. It is
-        # restarted where it stopped, since a simplex may collapse on such a ridge.
-        found = minimize(rate, start, method="Nelder-Mead", options=_PRECISE)
-        found = minimize(rate, found.x, method="Nelder-Mead", options=_PRECISE)
-        if best is None or found.fun < best.fun:
-            best = found
-    assert best is not None
-    return float(best.fun), _lyapunov_matrix(best.x)
-
-
-_PRECISE = {"xatol": 1e-10, "fatol": 1e-13, "maxiter": 2000, "maxfev": 4000}
-
-
 def _spread(vertices: Array) -> NDArray[np.intp]:
     """Indices of a few vertices, far apart: a search over sequences cannot use hundreds."""
     if len(vertices) <= _SEARCH_VERTICES:
@@ -291,39 +333,3 @@ def _spread(vertices: Array) -> NDArray[np.intp]:
         distance = np.minimum(distance, step)
         chosen.append(int(np.argmax(distance)))
     return np.array(chosen)
-
-
-def _growing_sequence(
-    matrices: Array, lyapunov: Array, max_length: int
-) -> tuple[tuple[int, ...], float]:
-    """Sequence of matrices with the largest growth per step that a beam search finds."""
-    best: tuple[tuple[int, ...], float] = ((), 0.0)
-    for orders, products in _beam(matrices, lyapunov, max_length):
-        radius = np.abs(np.linalg.eigvals(products)).max(axis=-1) ** (1 / len(orders[0]))
-        top = int(np.argmax(radius))
-        if radius[top] > best[1] * (1 + _MARGIN):
-            best = orders[top], float(radius[top])
-    return best
-
-
-def _beam(
-    matrices: Array, lyapunov: Array, max_length: int
-) -> Iterator[tuple[list[tuple[int, ...]], Array]]:
-    """For each length the sequences kept, with the products of their matrices, last one leftmost.
-
-    Kept are the largest products; how large is measured in the norm of the best Lyapunov function
-    for the set, which treats all directions of the error alike.
-    """
-    root = np.linalg.cholesky(lyapunov).T
-    back = np.linalg.inv(root)
-    orders: list[tuple[int, ...]] = [(k,) for k in range(len(matrices))]
-    products = matrices
-    yield orders, products
-    for _ in range(max_length - 1):
-        orders = [(*order, k) for order in orders for k in range(len(matrices))]
-        products = (matrices[None] @ products[:, None]).reshape(-1, 2, 2)
-        if len(orders) > _BEAM:
-            size = np.linalg.norm(root @ products @ back, ord=2, axis=(-2, -1))
-            keep = np.argsort(-size, kind="stable")[:_BEAM]
-            orders, products = [orders[k] for k in keep], products[keep]
-        yield orders, products

@@ -13,6 +13,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.gains import certificate
 from fuzzytrack.gains.certificate import (
     Certificate,
@@ -20,22 +21,29 @@ from fuzzytrack.gains.certificate import (
     convex_hull,
     polygon_in_gains,
 )
+from fuzzytrack.gains.elapsed_times import ElapsedTimes
 from fuzzytrack.gains.stability import poles
-from fuzzytrack.gains.wdomain import bilinear
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
 
 __all__ = ["REACHES", "certify", "reachable_gains", "sequence_steps"]
 
 REACHES = ("universe", "rules")
+#: Values of each output of which counter-examples are made; the limits are two of them.
+_TRIED = 5
 
 
 def certify(
     gains: ArrayLike | RuleBase | str | os.PathLike[str],
     *,
     reach: str = "universe",
-    max_length: int = 8,
+    steps: tuple[float, float] | None = None,
+    missed: int = 0,
+    max_length: int = 48,
 ) -> Certificate:
     """Certify a set of gains, or all gains that a rule base can reach, under arbitrary switching.
+
+    Without `steps` and `missed` it is about tracks with constant time between plots and no missed
+    plots.
 
     Parameters
     ----------
@@ -44,6 +52,11 @@ def certify(
         as for `fuzzytrack.load_rulebase`.
     reach : {"universe", "rules"}
         For a rule base, see `reachable_gains`.
+    steps : (float, float), optional
+        Shortest and longest time between rows, s. It may change from row to row within these
+        limits, in any way. Only their ratio matters.
+    missed : int
+        Most plots that are missed in a row.
     max_length : int
         Longest sequence of gains tried as a counter-example.
 
@@ -59,11 +72,19 @@ def certify(
         If `gains` is something else.
     ValueError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> certify("stiffness-damping", steps=(1, 2)).verdict
+    'certified'
+    >>> certify("stiffness-damping", steps=(1, 4)).verdict
+    'refuted'
     """
+    times = ElapsedTimes(*(steps or (1.0, 1.0)), missed)
     if not isinstance(gains, RuleBase | str | os.PathLike):
-        return certificate.certify(_pairs(gains), max_length)
+        return certificate.certify(_pairs(gains), max_length, times=times)
     around, reached = _gains(as_rulebase(gains, "gains"), reach)
-    return certificate.certify(around, max_length, reached=reached)
+    return certificate.certify(around, max_length, reached=reached, times=times)
 
 
 def _pairs(gains: ArrayLike) -> Array:
@@ -103,8 +124,9 @@ def reachable_gains(rules: RuleBase | str | os.PathLike[str], reach: str = "univ
 
     Notes
     -----
-    The gains of an opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are not included: it ends
-    after a few plots, so whether the error shrinks in the long run does not depend on it.
+    The defaults of the outputs, which hold where no rule fires, are included. The gains of an
+    opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are not: it ends after a few plots, so
+    whether the error shrinks in the long run does not depend on it.
     """
     return _gains(as_rulebase(rules), reach)[0]
 
@@ -123,12 +145,17 @@ def sequence_steps(
     Returns
     -------
     list of dict
-        For each step ``alpha`` and ``beta``; ``stiffness`` and ``damping``, if the rule base has a
-        stiffness and the gains one that is positive; and ``modulus``, that of the largest pole.
-        Empty unless refuted.
+        For each plot ``alpha`` and ``beta``; ``elapsed``, the time since the last plot, and
+        ``missed``, how many plots are missed before it; ``stiffness`` and ``damping``, if the rule
+        base has a stiffness and the gains one that is positive; and ``modulus``, that of the
+        largest pole. Empty unless refuted.
     """
     w_domain = "stiffness" in as_rulebase(rules).output_names
-    return [_step(float(alpha), float(beta), w_domain) for alpha, beta in found.sequence]
+    steps = []
+    for (alpha, beta), elapsed in zip(found.sequence.tolist(), found.elapsed.tolist(), strict=True):
+        time = {"elapsed": elapsed, "missed": found.times.missed_within(elapsed)}
+        steps.append(time | _step(alpha, beta, w_domain))
+    return steps
 
 
 def _step(alpha: float, beta: float, w_domain: bool) -> dict[str, float]:
@@ -150,25 +177,32 @@ def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
             f"{rules.name} cannot be certified: needed are outputs stiffness and damping, "
             f"stiffness alone, or alpha and beta; it has {', '.join(rules.output_names)}"
         )
-    universes = [rules.output(name).universe for name in outputs.names]
-    limits = [(u.low, u.high) for u in universes]
+    values = [_values(rules.output(name)) for name in outputs.names]
     if reach == "rules":
-        points = _rule_conclusions(rules, outputs.names)
+        points = reached = _rule_conclusions(rules, outputs.names)
     else:
-        points = np.array(list(product(*limits)))
-    if outputs.setting == "direct":
-        return points, points
-    if outputs.setting == "kalata":
-        return _kalata_curve(float(points.min()), float(points.max()))
-    if reach == "universe":
-        return polygon_in_gains(box(*limits))
-    around, _ = polygon_in_gains(convex_hull(points))
-    # A rule that fires alone concludes a corner; what lies between two may need both.
-    return around, np.stack(bilinear(points[:, 0], points[:, 1]), axis=1)
+        # Where no rule fires each output is its default, which may lie outside of its universe.
+        points = np.array(list(product(*((min(v), max(v)) for v in values))))
+        reached = np.array(list(product(*values)))
+    if outputs.setting == "w-domain":
+        corners = box(*((min(v), max(v)) for v in values)) if reach == "universe" else points
+        around = polygon_in_gains(convex_hull(corners))[0]
+    elif outputs.setting == "kalata":
+        around = _around_kalata_curve(float(points.min()), float(points.max()))
+    else:
+        around = points
+    to_gains = outputs.conversion(outputs.names)
+    return around, np.array([to_gains(tuple(point))[:2] for point in reached.tolist()])
 
 
-def _kalata_curve(lowest: float, highest: float, pieces: int = 32) -> tuple[Array, Array]:
-    """Kalata's gains between two stiffnesses: corners of an outline around them, and points on it.
+def _values(output: Variable) -> tuple[float, ...]:
+    """Values of an output: a few in its universe, the limits among them, and its default."""
+    inside = tuple(np.linspace(output.universe.low, output.universe.high, _TRIED).tolist())
+    return inside if output.default is None else (*inside, output.default)
+
+
+def _around_kalata_curve(lowest: float, highest: float, pieces: int = 32) -> Array:
+    """Corners of an outline around Kalata's gains between two stiffnesses.
 
     With r = √(1 - α) they are (1 - r², 2(1 - r)²), a parabola. Between r₁ and r₂ it lies within the
     triangle of its ends and the control point (1 - r₁r₂, 2(1 - r₁)(1 - r₂)).
@@ -177,9 +211,9 @@ def _kalata_curve(lowest: float, highest: float, pieces: int = 32) -> tuple[Arra
     # Root of (1 - r)² = 2rω₀².
     ends = 1 / (1 + squares + np.sqrt(squares * (2 + squares)))
     r = np.linspace(ends[0], ends[1], pieces + 1)
-    reached = np.stack([1 - r * r, 2 * (1 - r) ** 2], axis=1)
+    knots = np.stack([1 - r * r, 2 * (1 - r) ** 2], axis=1)
     between = np.stack([1 - r[1:] * r[:-1], 2 * (1 - r[1:]) * (1 - r[:-1])], axis=1)
-    return np.concatenate([reached, between]), reached
+    return np.concatenate([knots, between])
 
 
 def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
@@ -211,6 +245,7 @@ def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
             )
         if totals[0] > 0:
             rows.append(row)
+    # No rule fires: all outputs are their defaults.
     defaults = [rules.output(name).default for name in names]
     if None not in defaults:
         rows.append([float(d) for d in defaults if d is not None])

@@ -183,6 +183,12 @@ def test_design_of_nothing_is_on_the_edge(run):
         ("certify nowhere", "nowhere"),
         ("certify valve", "error: valve cannot be certified: needed are outputs stiffness"),
         ("certify stiffness-damping --reach all", "error: --reach: unknown 'all'; one of universe"),
+        ("certify chan-style --steps 4", "error: --steps: expected LOW:HIGH, two times, got '4'"),
+        ("certify chan-style --steps 4:1", "error: --steps: must be two times with 0 < shortest"),
+        ("certify chan-style --steps 0:1", "<= longest, got 0 and 1"),
+        ("certify chan-style --steps 1:inf", "<= longest, got 1 and inf"),
+        ("certify chan-style --missed -1", "error: --missed: must be 0 to 1000, got -1"),
+        ("certify chan-style --missed 1.5", "--missed"),
     ],
 )
 def test_bad_input_is_one_line(fails, words, message):
@@ -202,8 +208,11 @@ def test_certified(run, reach, rate):
         assert excess.max() < 1e-9
     text = run("certify", "stiffness-damping", "--reach", reach).stdout
     assert text.startswith("stiffness-damping: certified\n")
-    assert f"to {found['rate']:.4f} of what it was" in text
-    assert "Missed plots, at which no correction is made, are not included.\n" in text
+    assert max(map(len, text.splitlines())) <= 80
+    assert f"to {found['rate']:.4f} of what it was" in " ".join(text.split())
+    assert "Covered: constant T, no missed plots.\n" in text
+    assert (found["steps"], found["missed"]) == (None, 0)
+    assert found["covered"] == "constant T, no missed plots"
 
 
 def test_refuted_by_an_explicit_sequence(run):
@@ -216,8 +225,8 @@ def test_refuted_by_an_explicit_sequence(run):
     assert growth == pytest.approx(found["growth"])
     assert growth > 1.3
     text = run("certify", "stiffness-damping-wide").stdout
-    assert "stable, or on the edge of stability:" in text
-    assert f"grow by a factor of {found['growth']:.4f} a step" in text
+    assert "stable, or on the edge of stability:" in " ".join(text.split())
+    assert f"grow by a factor of {found['growth']:.4f} a plot" in " ".join(text.split())
     assert text.count("1.0000\n") == len(found["sequence"])
 
 
@@ -225,13 +234,51 @@ def test_refuted_by_gains_that_are_stable(run, csv):
     file = csv(EDGE, "edge.yaml")
     text = run("certify", file).stdout
     assert text.startswith(f"{file}: refuted\n")
-    assert "though each by itself is stable:" in text
-    assert "1.1598 a step" in text
+    words = " ".join(text.split())
+    assert "though each by itself, at constant T, is stable:" in words
+    assert "1.1598 a plot" in words
 
 
-def test_not_decided(run):
-    assert "not decided" in run("certify", "chan-style").stdout
-    assert as_json(run, "certify", "chan-style")["growth"] is None
+def test_not_decided(run, csv):
+    # Without a velocity gain worth mentioning an error of velocity neither grows nor shrinks.
+    text = EDGE.replace("stiffness", "alpha").replace("damping", "beta")
+    text = text.replace("0.3001", "1e-12").replace("0.3", "0")
+    file = csv(text, "edge.yaml")
+    assert "nor a sequence of gains that makes" in " ".join(run("certify", file).stdout.split())
+    found = as_json(run, "certify", file)
+    assert (found["verdict"], found["growth"]) == ("not decided", None)
+
+
+def test_certified_over_a_range_of_times(run):
+    words = "certify", "omega-schedule", "--steps", "2:3", "--missed", "0"
+    found = as_json(run, *words)
+    assert (found["verdict"], found["steps"], found["missed"]) == ("certified", [2, 3], 0)
+    text = run(*words).stdout
+    assert "Covered: time between rows in [2, 3], changing in any way, no missed plots.\n" in text
+    assert f"{found['rate']:.4f} of what it was" in " ".join(text.split())
+    words = "certify", "omega-schedule", "--steps", "1:2"
+    found = as_json(run, *words)
+    text = run(*words).stdout
+    assert f"polygon of {len(found['polygon'])} corners" in " ".join(text.split())
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_refuted_by_gains_and_times(run):
+    words = "certify", "omega-schedule", "--steps", "1:4", "--missed", "3"
+    found = as_json(run, *words)
+    product = np.eye(2)
+    for step in found["sequence"]:
+        assert 1 <= step["elapsed"] <= 16
+        assert step["elapsed"] <= 4 * (1 + step["missed"])
+        product = error_matrix(step["alpha"], step["beta"], step["elapsed"]) @ product
+    growth = np.abs(np.linalg.eigvals(product)).max() ** (1 / len(found["sequence"]))
+    assert growth == pytest.approx(found["growth"])
+    assert growth > 2
+    text = run(*words).stdout
+    assert "up to 3 missed plots in a row.\n" in text
+    assert "plot  time  missed  stiffness" in text
+    one = run("certify", "stiffness-damping", "--missed", "1").stdout
+    assert "Covered: constant T, up to 1 missed plot in a row.\n" in one
 
 
 def test_steps_of_direct_gains_have_no_stiffness(run, csv):
@@ -241,4 +288,4 @@ def test_steps_of_direct_gains_have_no_stiffness(run, csv):
     text = text.replace("0.3001", "2").replace("0.3", "0.1")
     found = as_json(run, "certify", csv(text, "edge.yaml"))
     assert found["verdict"] == "refuted"
-    assert set(found["sequence"][0]) == {"alpha", "beta", "modulus"}
+    assert set(found["sequence"][0]) == {"alpha", "beta", "elapsed", "missed", "modulus"}

@@ -13,6 +13,7 @@ from fuzzytrack.gains.certificate import (
     error_matrix,
     polygon_in_gains,
 )
+from fuzzytrack.gains.elapsed_times import ElapsedTimes
 
 PUBLISHED = (0.25, 0.35), (0.54, 0.89)
 WIDE = (0.2, 0.8), (0.0, 1.3)
@@ -59,13 +60,17 @@ def test_growth_of_the_known_sequence(zeta, growth):
         assert found.verdict == "refuted"
         assert found.growth >= growth - 1e-6
     else:
-        assert found.verdict == "not decided"
+        assert found.verdict == "certified"
+        assert growth < found.rate < 1
 
 
-def test_damping_from_0_76_makes_the_wide_stiffness_safe():
-    assert certify_region(box((0.2, 0.8), (0.76, 1.3))).verdict == "certified"
-    # Necessary is a damping above (w2 - w1)/(2 √(w1 w2)) = 0.75
-    assert certify_region(box((0.2, 0.8), (0.74, 1.3))).verdict != "certified"
+def test_an_ellipse_needs_more_damping_than_a_polygon():
+    # For an ellipse a damping above (w2 - w1)/(2 √(w1 w2)) = 0.75 is necessary.
+    assert not len(certify_region(box((0.2, 0.8), (0.76, 1.3))).polygon)
+    found = certify_region(box((0.2, 0.8), (0.74, 1.3)))
+    assert (found.verdict, len(found.polygon) > 4) == ("certified", True)
+    assert certify_region(box((0.2, 0.8), (0.59, 1.3))).verdict == "certified"
+    assert certify_region(box((0.2, 0.8), (0.58, 1.3))).verdict == "refuted"
 
 
 def test_the_error_matrix_is_that_of_the_tracker():
@@ -99,6 +104,54 @@ def test_the_image_of_a_box_lies_in_the_hull(w1, ratio, z1, width):
     assert side.min() > -1e-12
 
 
+@pytest.mark.parametrize("elapsed", [0.5, 1.0, 3.0])
+def test_the_error_matrix_at_other_times_is_that_of_the_tracker(elapsed):
+    """The error predicted for a time U = 2 after each plot."""
+    alpha, beta, unit = 0.6, 0.3, 2.0
+    tracker = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta))
+    t = np.concatenate([[0.0, 5.0], 5.0 + elapsed * unit * np.arange(1, 5)])
+    plots = np.zeros(6)
+    plots[:2] = -3.0, 4.0
+    result = tracker.run(t, plots)
+    error = np.stack([result.filtered + unit * result.velocity, unit * result.velocity], axis=1)
+    for k in range(2, 6):
+        np.testing.assert_allclose(error[k], error_matrix(alpha, beta, elapsed) @ error[k - 1])
+
+
+@pytest.mark.parametrize(
+    ("name", "steps", "pair"),
+    [("omega-schedule", (1, 4), 1.2903), ("stiffness-damping", (1, 12), 1.2624)],
+)
+def test_known_growth_at_changing_times(name, steps, pair):
+    found = ft.certify(name, steps=steps)
+    assert found.verdict == "refuted"
+    assert found.growth**2 > pair
+    # The known sequences have two plots, with the shortest and the longest step.
+    assert ft.certify(name, steps=steps, max_length=2).growth ** 2 == pytest.approx(pair, abs=1e-4)
+
+
+def test_small_fixed_gains_are_certified_over_a_range_of_times():
+    assert certify([[0.3, 0.05]], times=ElapsedTimes(1, 4)).verdict == "certified"
+    assert certify([[0.3, 0.05]], times=ElapsedTimes(1, 2, missed=1)).verdict == "certified"
+    assert certify([[0.3, 0.05]], times=ElapsedTimes(1, 16)).verdict == "refuted"
+
+
+@given(st.floats(0.01, 100), st.floats(1, 3), st.integers(0, 3))
+@settings(max_examples=10, deadline=None)
+def test_only_the_ratio_of_the_steps_matters(low, ratio, missed):
+    gains = [[0.5, 0.2], [0.4, 0.15]]
+    found = certify(gains, times=ElapsedTimes(low, low * ratio, missed))
+    same = certify(gains, times=ElapsedTimes(1.0, ratio, missed))
+    assert found.verdict == same.verdict
+    assert found.rate == pytest.approx(same.rate, rel=1e-6)
+    np.testing.assert_allclose(found.elapsed, low * same.elapsed, rtol=1e-6)
+
+
+def test_gains_on_the_edge_are_not_decided():
+    # With gains of 0 an error neither grows by a factor nor shrinks.
+    assert certify([[0.0, 0.0]]).verdict == "not decided"
+
+
 def test_a_certified_matrix_contracts_every_gain_inside():
     found = certify_region(box(*PUBLISHED))
     rng = np.random.default_rng(2)
@@ -121,7 +174,8 @@ def check_random_boxes(boxes, runs, steps, seed=3):
         if found.verdict == "certified":
             matrices = error_matrix(*found.vertices.T)
             largest = simulate(matrices, rng, runs, steps)
-            spread = np.sqrt(np.linalg.cond(found.lyapunov))
+            sizes = found.norm([(np.cos(a), np.sin(a)) for a in np.linspace(0, np.pi, 1000)])
+            spread = 1.01 * sizes.max() / sizes.min()
             # Errors that shrink below the smallest normal numbers keep a rounding error.
             assert largest <= spread * found.rate**steps * (1 + 1e-6) + 1e-290
     return verdicts
@@ -159,6 +213,13 @@ def test_a_single_pair_has_the_rate_of_its_poles():
     radius = np.abs(np.linalg.eigvals(error_matrix(0.5377, 0.2018))).max()
     assert found.verdict == "certified"
     assert found.rate == pytest.approx(radius, abs=1e-6)
+
+
+def test_a_double_pole():
+    # Critically damped: both poles at 0.5, and no ellipse has exactly their rate.
+    found = certify([[0.75, 0.25]])
+    assert found.verdict == "certified"
+    assert 0.5 < found.rate < 0.5001
 
 
 def test_unstable_gains_refute_themselves():

@@ -17,6 +17,8 @@ from fuzzytrack.schedulers.reachable_gains import certify, reachable_gains
         ("stiffness-damping-wide", "universe", "refuted", 1.516598),
         ("stiffness-damping-wide", "rules", "refuted", 1.364012),
         ("omega-schedule", "universe", "certified", 0.836665),
+        ("chan-style", "universe", "certified", 0.999794),
+        ("chan-style", "rules", "certified", 0.989968),
     ],
 )
 def test_shipped_rule_bases(name, reach, verdict, rate):
@@ -77,6 +79,20 @@ def test_a_default_is_reached_too():
     more = reachable_gains(replace(rules, outputs=outputs), "rules")
     corner = ft.alpha_beta_from_w(0.25, 0.54)
     assert np.abs(more - corner).sum(axis=1).min() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["stiffness-damping", "omega-schedule", "chan-style"])
+def test_a_default_outside_of_the_universe_counts(name):
+    """Where no rule fires each output is its default, whatever its universe."""
+    rules = ft.load_rulebase(name)
+    outputs = rules.outputs
+    assert certify(rules).verdict == "certified"
+    far = replace(outputs[0], default=30.0)
+    found = certify(replace(rules, outputs=(far, *outputs[1:])))
+    assert found.verdict == "refuted"
+    # The sequence uses it: β tends to its limit of 4, or 2 for Kalata, as stiffness grows.
+    column, least = {"chan-style": (0, 30), "omega-schedule": (0, 0.998)}.get(name, (1, 3))
+    assert found.sequence[:, column].max() >= least
 
 
 def test_what_cannot_be_certified():
