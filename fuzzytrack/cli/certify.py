@@ -13,7 +13,6 @@ from fuzzytrack.cli.output import print_json, print_table, say, show
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains.certificate import Certificate
-from fuzzytrack.gains.elapsed_times import ElapsedTimes
 from fuzzytrack.plurals import counted
 from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
 from fuzzytrack.schedulers.reachable_gains import sequence_steps
@@ -35,13 +34,21 @@ def certify(
         str | None,
         typer.Option(
             metavar="LOW:HIGH",
-            help="Limits of the time between rows, which may change from row to row. "
+            help="Limits of the time between rows (s), which may change from row to row. "
             "[default: constant]",
         ),
     ] = None,
     missed: Annotated[
         int, typer.Option(metavar="N", help="Most plots that are missed in a row.")
     ] = 0,
+    period: Annotated[
+        float | None,
+        typer.Option(
+            metavar="T",
+            help="Sampling time to which the gains belong (s): they are converted to the time "
+            "since the last plot. [default: that of the rule base]",
+        ),
+    ] = None,
     json: options.Json = False,
 ) -> None:
     """Prove that the error shrinks for any order of gains, or show an order that makes it grow.
@@ -51,7 +58,7 @@ def certify(
     """
     rules = load_rulebase(name)
     limits = None if steps is None else _limits(steps)
-    found = certify_gains(rules, reach=reach, steps=limits, missed=missed)
+    found = certify_gains(rules, reach=reach, steps=limits, missed=missed, period=period)
     sequence = sequence_steps(rules, found)
     if json:
         print_json(
@@ -60,7 +67,8 @@ def certify(
                 "reach": reach,
                 "steps": limits,
                 "missed": missed,
-                "covered": _covered(limits, missed),
+                "period": found.period,
+                "covered": _covered(found, limits),
                 "verdict": found.verdict,
                 "rate": found.rate,
                 "lyapunov": found.lyapunov,
@@ -72,7 +80,7 @@ def certify(
         )
         return
     say(f"{name}: {found.verdict}")
-    say(f"Covered: {_covered(limits, missed)}.")
+    _paragraph(f"Covered: {_covered(found, limits)}.")
     say()
     if found.verdict == "refuted":
         _print_sequence(rules, reach, found, sequence)
@@ -99,14 +107,17 @@ def _limits(text: str) -> tuple[float, float]:
     return low, high
 
 
-def _covered(limits: tuple[float, float] | None, missed: int) -> str:
+def _covered(found: Certificate, limits: tuple[float, float] | None) -> str:
     """Times that a verdict is about."""
-    if limits is None:
-        time = "constant T"
+    missed, period = found.times.missed, found.period
+    if limits is not None:
+        time = f"time between rows in [{limits[0]:g}, {limits[1]:g}] s, changing in any way"
     else:
-        time = f"time between rows in [{limits[0]:g}, {limits[1]:g}], changing in any way"
+        time = "constant T" if period is None else f"constant T = {period:g} s"
     plots = f"up to {counted(missed, 'missed plot')} in a row" if missed else "no missed plots"
-    return f"{time}, {plots}"
+    return f"{time}, {plots}" + (
+        f"; gains of a period of {period:g} s" if period is not None else ""
+    )
 
 
 def _print_sequence(
@@ -121,7 +132,7 @@ def _print_sequence(
     )
     say()
     heads = [key for key in ("stiffness", "damping", "alpha", "beta") if key in sequence[0]]
-    varies = found.times != ElapsedTimes()
+    varies = len(set(found.elapsed.tolist())) > 1
     rows = [
         [
             str(number),
@@ -135,7 +146,7 @@ def _print_sequence(
     print_table(["plot", *times, *heads, "largest pole"], rows)
     if varies:
         say()
-        say("time: since the last plot; missed: plots missed meanwhile.")
+        say("time: since the last plot (s); missed: plots missed meanwhile.")
 
 
 def _print_norm(rules: RuleBase, reach: str, found: Certificate) -> None:
@@ -145,7 +156,7 @@ def _print_norm(rules: RuleBase, reach: str, found: Certificate) -> None:
         f"{found.rate:.4f} of what it was, or less."
     )
     say()
-    unit = "T" if found.times.low == found.times.high else f"{found.times.low:g}"
+    unit = "T" if found.times.low == found.times.high else f"{found.times.low:g} s"
     error = (
         f"e is the error of the position predicted for a time {unit} after a plot, and {unit} "
         "times the error of the velocity"

@@ -19,10 +19,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.gains.elapsed_times import ElapsedTimes, around_curve
 from fuzzytrack.gains.growing_sequence import growing_sequence
 from fuzzytrack.gains.lyapunov import common_lyapunov
+from fuzzytrack.gains.period import poles_in_time, resampled_gains
 from fuzzytrack.gains.polygon_norm import ellipse, polygon_norm, reducing_polygon
+from fuzzytrack.gains.polygons import convex_hull
+from fuzzytrack.gains.resampled_region import resampled_region
+from fuzzytrack.gains.stability import is_stable
 from fuzzytrack.reprs import summary
 
 __all__ = [
@@ -30,7 +34,6 @@ __all__ = [
     "box",
     "certify",
     "certify_region",
-    "convex_hull",
     "error_matrix",
     "polygon_in_gains",
 ]
@@ -63,10 +66,13 @@ class Certificate:
         Gains (α, β) whose convex hull holds the set.
     times : ElapsedTimes
         Times between plots that are covered.
+    period : float or None
+        Sampling time to which the gains belong; None if they are used at any.
     polygon : ndarray, shape (k, 2)
         Corners of the unit ball of `norm` where an ellipse does not do; otherwise empty.
     sequence : ndarray, shape (length, 2)
-        Gains which, repeated in this order, make the error grow; empty unless refuted.
+        Gains which, repeated in this order, make the error grow, as used after the times `elapsed`;
+        empty unless refuted.
     elapsed : ndarray, shape (length,)
         Times since the last plot that go with them.
     growth : float
@@ -78,6 +84,7 @@ class Certificate:
     lyapunov: Array
     vertices: Array
     times: ElapsedTimes
+    period: float | None = None
     polygon: Array = field(default_factory=lambda: np.empty((0, 2)))
     sequence: Array = field(default_factory=lambda: np.empty((0, 2)))
     elapsed: Array = field(default_factory=lambda: np.empty(0))
@@ -228,6 +235,7 @@ def certify(
     *,
     reached: ArrayLike | None = None,
     times: ElapsedTimes | None = None,
+    period: float | None = None,
 ) -> Certificate:
     """Certify a set of α-β gains that may switch arbitrarily from plot to plot.
 
@@ -243,6 +251,9 @@ def certify(
         given.
     times : ElapsedTimes, optional
         Times between plots; constant, and no plot missed, unless given.
+    period : float, optional
+        Sampling time to which the gains belong (s). They are then converted to the time since the
+        last plot, see `fuzzytrack.gains.period`.
 
     Returns
     -------
@@ -251,14 +262,17 @@ def certify(
     Raises
     ------
     ValueError
-        If there is no pair, one is not finite, or `max_length` is below 1.
+        If there is no pair, one is not finite, `max_length` is below 1, or gains with a period are
+        not stable or have a negative real pole.
 
     Notes
     -----
     The matrix of a plot is affine in (α, β) for a fixed (s, 1/s), and affine in (s, 1/s) for fixed
     gains. So it is a convex combination of the matrices of the corners of both sets, and a norm of
     it is at most the largest norm of those: finitely many matrices prove the bound for all, without
-    a grid. The curve (s, 1/s) is enclosed in a polygon, see `ElapsedTimes.around`.
+    a grid. The curve (s, 1/s) is enclosed in a polygon, see `ElapsedTimes.around`. With a period
+    this is done for each of many short intervals of s, with a polygon around all gains that are
+    used at these times (`fuzzytrack.gains.resampled_region`).
 
     First the best quadratic norm is sought (`fuzzytrack.gains.lyapunov`). If it does not decrease,
     a beam search looks for a product of matrices with a spectral radius above 1, which is an
@@ -271,6 +285,8 @@ def certify(
     'certified'
     >>> certify([[0.5377, 0.2018]], times=ElapsedTimes(1, 10)).verdict
     'refuted'
+    >>> certify([[0.5377, 0.2018]], times=ElapsedTimes(1, 10), period=4).verdict
+    'certified'
     """
     points = np.asarray(gains, dtype=np.float64)
     if points.ndim != 2 or points.shape[-1] != 2 or not len(points):
@@ -279,19 +295,17 @@ def certify(
         raise ValueError("gains must be finite numbers")
     if max_length < 1:
         raise ValueError(f"max_length must be at least 1, got {max_length}")
-    times = times or ElapsedTimes()
+    if period is not None and reached is None:
+        poles_in_time(*points.T)
+    times = times or ElapsedTimes(period or 1.0, period or 1.0)
     vertices = convex_hull(points)
-    alpha, beta = vertices.T
-    s, inverse = times.around().T
-    matrices = _error_matrix(
-        alpha[:, None], beta[:, None], s / times.low, inverse * times.low
-    ).reshape(-1, 2, 2)
+    matrices = _covering(vertices, times, period)
     rate, lyapunov = common_lyapunov(matrices)
-    found = partial(Certificate, lyapunov=lyapunov, vertices=vertices, times=times)
+    found = partial(Certificate, lyapunov=lyapunov, vertices=vertices, times=times, period=period)
     if rate < 1 - _MARGIN:
         return found("certified", rate)
     known = vertices if reached is None else convex_hull(np.asarray(reached, dtype=np.float64))
-    gains_tried, times_tried = _pairs(known[_spread(known)], times.tried())
+    gains_tried, times_tried = _tried(known[_spread(known)], times, period)
     tried = error_matrix(gains_tried[:, 0], gains_tried[:, 1], times_tried / times.low)
     order, growth = growing_sequence(tried, lyapunov, max_length)
     if growth > 1 + _MARGIN:
@@ -304,22 +318,33 @@ def certify(
     return found("not decided", rate)
 
 
-def _pairs(gains: Array, times: Array) -> tuple[Array, Array]:
-    """Each pair of gains with each time."""
-    return np.repeat(gains, len(times), axis=0), np.tile(times, len(gains))
+def _covering(vertices: Array, times: ElapsedTimes, period: float | None) -> Array:
+    """Matrices whose convex hull contains those of all gains at all times, shape (n, 2, 2)."""
+    parts = [(vertices, times.around())]
+    if period is not None:
+        parts = [
+            (resampled_region(vertices, low / period, high / period), around_curve(low, high))
+            for low, high in times.pieces().tolist()
+        ]
+    found = []
+    for gains, curve in parts:
+        (alpha, beta), (s, inverse) = gains.T[..., None], curve.T
+        matrices = _error_matrix(alpha, beta, s / times.low, inverse * times.low)
+        found.append(matrices.reshape(-1, 2, 2))
+    return np.concatenate(found)
 
 
-def convex_hull(points: Array) -> Array:
-    """Vertices of the convex hull, in order; the two ends where the points lie on a line."""
-    unique = np.unique(points, axis=0)
-    if len(unique) < 3:
-        return unique
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        return np.asarray(unique[ConvexHull(unique).vertices])
-    except QhullError:
-        return unique[[0, -1]]
+def _tried(known: Array, times: ElapsedTimes, period: float | None) -> tuple[Array, Array]:
+    """Gains for counter-examples, as they are used, and the time since the last plot of each."""
+    elapsed = times.tried()
+    gains, elapsed = np.repeat(known, len(elapsed), axis=0), np.tile(elapsed, len(known))
+    if period is None:
+        return gains, elapsed
+    # Those on the edge of stability cannot be converted.
+    stable = is_stable(gains[:, 0], gains[:, 1])
+    gains, elapsed = gains[stable], elapsed[stable]
+    alpha, beta, _ = resampled_gains(gains[:, 0], gains[:, 1], period=period, dt=elapsed)
+    return np.stack([alpha, beta], axis=1), elapsed
 
 
 def _spread(vertices: Array) -> NDArray[np.intp]:

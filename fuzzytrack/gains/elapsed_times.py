@@ -10,11 +10,11 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 
-__all__ = ["ElapsedTimes"]
+__all__ = ["ElapsedTimes", "around_curve"]
 
 _MOST_MISSED = 1000
-#: Ratio of the ends of a piece of the curve (s, 1/s) that is enclosed in a triangle; the triangle
-#: reaches below the curve by a fraction of its square over 8.
+#: Ratio of the ends of a piece. The triangle around the curve (s, 1/s) there reaches below it by
+#: less than a thousandth.
 _PIECE = 1.05
 _MOST_PIECES = 400
 _TRIED = 4
@@ -68,25 +68,23 @@ class ElapsedTimes:
                 found.append((low, high))
         return found
 
+    def pieces(self) -> Array:
+        """Short intervals that together hold every time since the last plot, shape (n, 2)."""
+        pieces = []
+        for low, high in self.intervals:
+            count = math.ceil(math.log(high / low) / math.log(_PIECE))
+            knots = np.geomspace(low, high, min(max(count, 1), _MOST_PIECES) + 1)
+            pieces.append(np.stack([knots[:-1], knots[1:]], axis=1))
+        return np.unique(np.concatenate(pieces), axis=0)
+
     def around(self) -> Array:
         """Points (s, r) whose convex hull contains (s, 1/s) for every time s since the last plot.
-
-        The curve (s, 1/s) is convex. Between two of its points it lies in the triangle of these and
-        of the point where its tangents there meet.
 
         Returns
         -------
         ndarray, shape (n, 2)
         """
-        points = []
-        for low, high in self.intervals:
-            pieces = math.ceil(math.log(high / low) / math.log(_PIECE))
-            knots = np.geomspace(low, high, min(pieces, _MOST_PIECES) + 1)
-            before, after = knots[:-1], knots[1:]
-            tangents = np.stack([2 * before * after, np.full_like(after, 2)]) / (before + after)
-            ends = np.array([[low, high], [1 / low, 1 / high]])
-            points += [ends.T, tangents.T]
-        return np.unique(np.concatenate(points), axis=0)
+        return np.unique(np.concatenate([around_curve(*piece) for piece in self.pieces()]), axis=0)
 
     def tried(self) -> Array:
         """A few times since the last plot, the shortest and the longest among them.
@@ -102,3 +100,16 @@ class ElapsedTimes:
     def missed_within(self, elapsed: float) -> int:
         """How many plots are missed, at least, when so much time has passed since the last one."""
         return max(0, math.ceil(elapsed / self.high * (1 - 1e-12)) - 1)
+
+
+def around_curve(low: float, high: float) -> Array:
+    """Corners of a triangle around the curve (s, 1/s) from s = low to high.
+
+    The curve is convex: it lies between its ends and the point where its tangents there meet.
+
+    Returns
+    -------
+    ndarray, shape (3, 2)
+    """
+    total = low + high
+    return np.array([(low, 1 / low), (2 * low * high / total, 2 / total), (high, 1 / high)])

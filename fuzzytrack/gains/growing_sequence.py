@@ -35,11 +35,13 @@ def growing_sequence(matrices: Array, p: Array, max_length: int) -> tuple[Order,
     Returns
     -------
     order : ndarray of int, shape (length,)
-        Indices of the matrices, first one first.
+        Indices of the matrices, first one first; empty if there are no matrices.
     growth : float
         Growth per matrix: spectral radius of the product, to the power of 1/length.
     """
     best, growth = np.empty(0, dtype=np.intp), 0.0
+    if not len(matrices):
+        return best, growth
     for orders, products in _beam(matrices, p, max_length):
         radius = np.abs(np.linalg.eigvals(products)).max(axis=-1) ** (1 / orders.shape[1])
         top = int(np.argmax(radius))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.gains.polygons import center_of_gravity, part_below
 
 __all__ = ["common_lyapunov", "largest_rate"]
 
@@ -57,7 +58,7 @@ def common_lyapunov(matrices: Array) -> tuple[float, Array]:
     polygon = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     best, best_p = np.inf, np.eye(2)
     for _ in range(_CUTS):
-        center = _center_of_gravity(polygon)
+        center = center_of_gravity(polygon)
         p = _from_disc(center)
         distance = np.hypot(*center)
         if distance < _RIM:
@@ -69,7 +70,7 @@ def common_lyapunov(matrices: Array) -> tuple[float, Array]:
             side = _grows(matrices[worst], rate, p)
         else:
             side = np.array([*(center / distance), -_RIM])
-        polygon = _part_below(polygon, side)
+        polygon = part_below(polygon, side)
         if len(polygon) < 3 or np.ptp(polygon, axis=0).max() < 1e-14:
             break
     return best, best_p / best_p[0, 0]
@@ -100,26 +101,3 @@ def _grows(matrix: Array, rate: float, p: Array) -> Array:
         return np.array([e[0] ** 2 - e[1] ** 2, 2 * e[0] * e[1], e[0] ** 2 + e[1] ** 2])
 
     return np.asarray(form(after) - rate**2 * form(v))
-
-
-def _center_of_gravity(polygon: Array) -> Array:
-    first = polygon[0]
-    one, other = polygon[1:-1] - first, polygon[2:] - first
-    areas = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    total = areas.sum()
-    if not total > 0:
-        return np.asarray(polygon.mean(axis=0))
-    return np.asarray(first + (areas @ (one + other)) / (3 * total))
-
-
-def _part_below(polygon: Array, side: Array) -> Array:
-    """Part of a convex polygon where a linear function is not positive."""
-    values = polygon @ side[:2] + side[2]
-    kept = []
-    for k in range(len(polygon)):
-        here, there = values[k - 1], values[k]
-        if (here > 0) != (there > 0):
-            kept.append(polygon[k - 1] + here / (here - there) * (polygon[k] - polygon[k - 1]))
-        if there <= 0:
-            kept.append(polygon[k])
-    return np.array(kept)

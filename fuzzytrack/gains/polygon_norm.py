@@ -8,10 +8,10 @@ from fuzzytrack.arrays import Array
 
 __all__ = ["ellipse", "polygon_norm", "reducing_polygon"]
 
-_ROUNDS = 100
+_ROUNDS = 60
 #: A polygon whose corners are so much farther out than at first does not come to an end.
 _LARGEST = 1e6
-_MOST_CORNERS = 400
+_MOST_CORNERS = 200
 
 
 def ellipse(p: Array, corners: int = 64) -> Array:

@@ -18,12 +18,13 @@ from fuzzytrack.gains import certificate
 from fuzzytrack.gains.certificate import (
     Certificate,
     box,
-    convex_hull,
     polygon_in_gains,
 )
 from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.gains.polygons import convex_hull
 from fuzzytrack.gains.stability import poles
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
+from fuzzytrack.schedulers.settings import check_period, read_settings
 
 __all__ = ["REACHES", "certify", "reachable_gains", "sequence_steps"]
 
@@ -38,6 +39,7 @@ def certify(
     reach: str = "universe",
     steps: tuple[float, float] | None = None,
     missed: int = 0,
+    period: float | None = None,
     max_length: int = 48,
 ) -> Certificate:
     """Certify a set of gains, or all gains that a rule base can reach, under arbitrary switching.
@@ -54,9 +56,12 @@ def certify(
         For a rule base, see `reachable_gains`.
     steps : (float, float), optional
         Shortest and longest time between rows, s. It may change from row to row within these
-        limits, in any way. Only their ratio matters.
+        limits, in any way. Without a period only their ratio matters.
     missed : int
         Most plots that are missed in a row.
+    period : float, optional
+        Sampling time to which the gains belong, s; that of the rule base unless given. The gains
+        are then converted to the time since the last plot, and constant T means this one.
     max_length : int
         Longest sequence of gains tried as a counter-example.
 
@@ -79,12 +84,27 @@ def certify(
     'certified'
     >>> certify("stiffness-damping", steps=(1, 4)).verdict
     'refuted'
+    >>> certify("stiffness-damping", steps=(1, 4), period=4).verdict
+    'certified'
     """
-    times = ElapsedTimes(*(steps or (1.0, 1.0)), missed)
     if not isinstance(gains, RuleBase | str | os.PathLike):
-        return certificate.certify(_pairs(gains), max_length, times=times)
-    around, reached = _gains(as_rulebase(gains, "gains"), reach)
-    return certificate.certify(around, max_length, reached=reached, times=times)
+        around, reached = _pairs(gains), None
+    else:
+        rules = as_rulebase(gains, "gains")
+        around, reached = _gains(rules, reach)
+        period = _period(rules, period)
+    times = ElapsedTimes(*(steps or (period or 1.0, period or 1.0)), missed)
+    return certificate.certify(around, max_length, reached=reached, times=times, period=period)
+
+
+def _period(rules: RuleBase, period: float | None) -> float | None:
+    """Sampling time to which the gains of a rule base belong."""
+    if period is not None:
+        outputs = find_gain_outputs(rules.output_names)
+        assert outputs is not None  # `_gains` refuses others
+        check_period(rules, outputs, period)
+        return period
+    return read_settings(rules).period if "period" in dict(rules.scheduler) else None
 
 
 def _pairs(gains: ArrayLike) -> Array:
@@ -147,10 +167,10 @@ def sequence_steps(
     list of dict
         For each plot ``alpha`` and ``beta``; ``elapsed``, the time since the last plot, and
         ``missed``, how many plots are missed before it; ``stiffness`` and ``damping``, if the rule
-        base has a stiffness and the gains one that is positive; and ``modulus``, that of the
-        largest pole. Empty unless refuted.
+        base has a stiffness, no period, and the gains a stiffness that is positive; and
+        ``modulus``, that of the largest pole. Empty unless refuted.
     """
-    w_domain = "stiffness" in as_rulebase(rules).output_names
+    w_domain = "stiffness" in as_rulebase(rules).output_names and found.period is None
     steps = []
     for (alpha, beta), elapsed in zip(found.sequence.tolist(), found.elapsed.tolist(), strict=True):
         time = {"elapsed": elapsed, "missed": found.times.missed_within(elapsed)}

@@ -254,13 +254,34 @@ def test_certified_over_a_range_of_times(run):
     found = as_json(run, *words)
     assert (found["verdict"], found["steps"], found["missed"]) == ("certified", [2, 3], 0)
     text = run(*words).stdout
-    assert "Covered: time between rows in [2, 3], changing in any way, no missed plots.\n" in text
+    assert "Covered: time between rows in [2, 3] s, changing in any way, no missed plots.\n" in text
     assert f"{found['rate']:.4f} of what it was" in " ".join(text.split())
     words = "certify", "omega-schedule", "--steps", "1:2"
     found = as_json(run, *words)
     text = run(*words).stdout
     assert f"polygon of {len(found['polygon'])} corners" in " ".join(text.split())
     assert max(map(len, text.splitlines())) <= 80
+
+
+def test_a_period_makes_the_difference(run, csv):
+    words = "certify", "stiffness-damping", "--steps", "1:12"
+    assert as_json(run, *words)["verdict"] == "refuted"
+    found = as_json(run, *words, "--period", "4")
+    assert (found["verdict"], found["period"]) == ("certified", 4)
+    text = " ".join(run(*words, "--period", "4").stdout.split())
+    assert "no missed plots; gains of a period of 4 s." in text
+    # The setting of a rule base; without steps T is the period, and the gains are those written.
+    file = csv(
+        EDGE.replace("0.2, 0.8", "0.3, 0.4")
+        .replace("[0.2, 0.3, 0.4]", "[0.3, 0.3, 0.4]")
+        .replace("0.3, 0.3001", "0.7, 0.8")
+        .replace("[0.7, 0.7, 0.8]", "[0.7, 0.7, 0.8]")
+        + "scheduler: {normalization: chan, gains: w-domain, period: 3}\n",
+        "own.yaml",
+    )
+    found = as_json(run, "certify", file)
+    assert (found["period"], found["covered"][:14]) == (3, "constant T = 3")
+    assert "got alpha=1.11828" in run("certify", "stiffness-damping-wide", "--period", "4").stderr
 
 
 def test_refuted_by_gains_and_times(run):
@@ -275,7 +296,7 @@ def test_refuted_by_gains_and_times(run):
     assert growth == pytest.approx(found["growth"])
     assert growth > 2
     text = run(*words).stdout
-    assert "up to 3 missed plots in a row.\n" in text
+    assert "up to 3 missed plots in a row." in " ".join(text.split())
     assert "plot  time  missed  stiffness" in text
     one = run("certify", "stiffness-damping", "--missed", "1").stdout
     assert "Covered: constant T, up to 1 missed plot in a row.\n" in one

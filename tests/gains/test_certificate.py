@@ -9,11 +9,12 @@ from fuzzytrack.gains.certificate import (
     box,
     certify,
     certify_region,
-    convex_hull,
     error_matrix,
     polygon_in_gains,
 )
 from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.gains.period import resampled_gains
+from fuzzytrack.gains.polygons import convex_hull
 
 PUBLISHED = (0.25, 0.35), (0.54, 0.89)
 WIDE = (0.2, 0.8), (0.0, 1.3)
@@ -145,6 +146,32 @@ def test_only_the_ratio_of_the_steps_matters(low, ratio, missed):
     assert found.verdict == same.verdict
     assert found.rate == pytest.approx(same.rate, rel=1e-6)
     np.testing.assert_allclose(found.elapsed, low * same.elapsed, rtol=1e-6)
+
+
+def test_a_period_makes_gains_safe_at_changing_times():
+    gains, times = [[0.5, 0.2], [0.4, 0.15]], ElapsedTimes(1, 12)
+    assert certify(gains, times=times).verdict == "refuted"
+    found = certify(gains, times=times, period=4)
+    assert found.verdict == "certified"
+    # Constant T is the period, where the gains are those that were given.
+    assert certify(gains, period=4).rate == certify(gains).rate
+    # Gains on the edge of stability cannot be converted, so no sequence is made of them.
+    assert (
+        certify([[0.0, 0.0]], reached=[[0.0, 0.0]], period=4, times=times).verdict == "not decided"
+    )
+    with pytest.raises(ValueError, match="negative real pole belong to one sampling time"):
+        certify([[1.5, 0.5]], period=4)
+
+
+def test_a_refutation_with_a_period_has_the_gains_that_are_used():
+    gains = np.array([[0.02, 0.3], [0.03, 0.001]])
+    found = certify(gains, times=ElapsedTimes(1, 3), period=1)
+    assert found.verdict == "refuted"
+    possible = np.concatenate(
+        [np.stack(resampled_gains(*gains.T, period=1, dt=s)[:2], axis=1) for s in (1, 3)]
+    )
+    for used in found.sequence:
+        assert np.abs(possible - used).max(axis=1).min() < 1e-12
 
 
 def test_gains_on_the_edge_are_not_decided():

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fuzzytrack.gains.certificate import convex_hull
 from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.gains.polygons import convex_hull
 
 
 def test_missed_plots_add_steps():

@@ -11,6 +11,7 @@ import pytest
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.gains.certificate import error_matrix
+from fuzzytrack.gains.period import resampled_gains
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
 from fuzzytrack.schedulers.reachable_gains import certify
 
@@ -63,6 +64,18 @@ def random_rule_base(rng):
     )
 
 
+def random_period(rules, steps, rng):
+    """A period for a third of the rule bases, where their gains can have one."""
+    if rng.random() < 2 / 3:
+        return None
+    period = float(steps[0] * rng.uniform(0.5, 2))
+    try:
+        certify(rules, period=period, max_length=1)
+    except ft.RuleBaseError:
+        return None
+    return period
+
+
 def gains_in_use(rules):
     """Gains that the rule base schedules, over its input and beyond, shape (n, 2)."""
     outputs = ft.FuzzySystem(rules)(x=np.linspace(-1, 1, 101))
@@ -81,6 +94,8 @@ def check_bound(found, gains, rng, sequences=1000, plots=40, tried=24):
         steps = rng.choice([low, high, rng.uniform(low, high)], (missed + 1, sequences, tried))
         skipped = np.arange(missed + 1)[:, None, None] > rng.integers(0, missed + 1, alpha.shape)
         elapsed = np.where(skipped, 0.0, steps).sum(axis=0)
+        if found.period:
+            alpha, beta, _ = resampled_gains(alpha, beta, period=found.period, dt=elapsed)
         after = error_matrix(alpha, beta, elapsed / low) @ e[:, None, :, None]
         sizes = found.norm(after[..., 0])
         chosen = np.where(greedy, sizes.argmax(axis=1), 0)
@@ -146,7 +161,9 @@ def check_random_rule_bases(count, seed=11):
         scale = float(rng.choice([1.0, 0.1, 7.0]))
         missed = int(rng.integers(0, 4))
         reach = "universe" if rules.operators.defuzzification == "centroid" else "rules"
-        found = certify(rules, reach=reach, steps=(scale, scale * steps[1]), missed=missed)
+        limits = scale, scale * steps[1]
+        period = random_period(rules, limits, rng)
+        found = certify(rules, reach=reach, steps=limits, missed=missed, period=period)
         verdicts.append(found.verdict)
         if found.verdict == "certified":
             check_bound(found, gains_in_use(rules), rng)
