@@ -1,6 +1,6 @@
-"""Tune the families of `fuzzytrack.tuning`, and print what the gallery measures.
+"""Tune the families of `fuzzytrack.tuning`, and print their numbers.
 
-The numbers go into examples/plot_17_ranking.py. It takes about an hour.
+Those for all sets go into benchmarks/ranked.py. It takes about an hour.
 """
 
 import argparse

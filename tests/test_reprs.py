@@ -44,7 +44,8 @@ from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch
 from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.track_store import TrackStore
-from fuzzytrack.tuning.ranking import Ranked
+from fuzzytrack.tuning import VARIANTS, rank
+from fuzzytrack.tuning.scored_plots import scored_plots
 
 NAMES = {
     name: getattr(module, name)
@@ -230,7 +231,8 @@ def values():
     yield compare(["chan-style"], times, plots[:, 0], 2.0, runs=20, seed=1)
     yield PairedDifference("constant-velocity", "chan-style", "predicted", "rmse",
                            *np.random.default_rng(1).random(5), 200)  # fmt: skip
-    yield Ranked("alpha-beta", {"mixed": 1.0}, {"mixed": 1.0}, 0.1, 0.2, 0.3)
+    yield rank(["fixed:alpha=0.5:beta=0.2"], 2, 1, ["jitter"])
+    yield scored_plots("report", VARIANTS["jitter"], 2, 1)
 
 
 def test_values_with_arrays_are_one_short_line():

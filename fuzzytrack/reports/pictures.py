@@ -127,17 +127,17 @@ def _draw_trajectories(results: Results, labels: Sequence[str]) -> Figure:
     if n_axes != 2 or np.isnan(away).all():
         figure = _figure(7.2, 6.6 if n_axes == 2 else 2.4 + 2.4 * n_axes)
         panels = figure.subplots(1 if n_axes == 2 else n_axes, sharex=True)
-        plot_trajectories(results.time, run.truth, run.plots, tracks, ax=panels)
+        plot_trajectories(run.time, run.truth, run.plots, tracks, ax=panels)
         return figure
     figure = _figure(7.2, 11.0)
     whole, close = figure.subplots(2)
-    plot_trajectories(results.time, run.truth, run.plots, tracks, ax=whole)
+    plot_trajectories(run.time, run.truth, run.plots, tracks, ax=whole)
     # One legend serves both.
     whole.get_legend().remove()
     worst = results.first_scored + int(np.nanargmax(np.fmax.reduce(away)))
     there = run.truth[worst]
     plot_trajectories(
-        results.time,
+        run.time,
         run.truth - there,
         run.plots - there,
         {label: track - there for label, track in tracks.items()},
@@ -145,7 +145,7 @@ def _draw_trajectories(results: Results, labels: Sequence[str]) -> Figure:
         axes_names=("x from there", "y from there"),
         ax=close,
     )
-    close.set_title(f"around the largest error, at t = {results.time[worst]:.6g} s", fontsize=10)
+    close.set_title(f"around the largest error, at t = {run.time[worst]:.6g} s", fontsize=10)
     step = np.median(distance(np.diff(run.truth, axis=0)))
     reach = 3 * max(float(np.nanmax(away)), float(step)) or 1.0
     close.set_aspect("equal", adjustable="box")

@@ -11,6 +11,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import number, positive
+from fuzzytrack.reprs import constructor_code
 from fuzzytrack.simulation.noise import TIMES, substream
 
 __all__ = ["PATTERNS", "REGULAR", "Sampling"]
@@ -33,10 +34,9 @@ class Sampling:
         - ``regular``: none; all intervals are equal.
         - ``jitter``: a share of the period, > 0 and < 0.5. Every scan is early or late by up to
           this share of the period, uniformly.
-        - ``alternate``: two intervals that take turns, as a ratio, such as (1, 10). Tracks begin
-          with either.
+        - ``alternate``: two intervals that take turns, in this order, as a ratio, such as (1, 10).
         - ``burst``: the number of plots in a burst, at least 2, and how many times as long as the
-          time between two of them the gap after a burst is, > 1. Tracks begin anywhere in a burst.
+          time between two of them the gap after a burst is, > 1.
         - ``log-uniform``: the smallest and the largest interval, as a ratio, such as (1, 10); each
           interval is drawn uniformly in its logarithm.
 
@@ -54,36 +54,35 @@ class Sampling:
     >>> import numpy as np
     >>> from fuzzytrack.simulation.noise import streams
     >>> from fuzzytrack.simulation.sampling import Sampling
-    >>> times = Sampling("alternate", (1, 3)).times(np.arange(9.0), streams(seed=1, runs=50))
-    >>> np.unique(np.diff(times, axis=0)).tolist()
-    [0.5, 1.5]
+    >>> Sampling("alternate", (1, 3)).times(np.arange(7.0), streams(seed=1, runs=50))
+    array([0. , 0.5, 2. , 2.5, 4. , 4.5, 6. ])
+    >>> Sampling("jitter", 0.2).times(np.arange(7.0), streams(seed=1, runs=50)).shape
+    (7, 50)
     """
 
     pattern: str = "regular"
-    numbers: tuple[float, ...] = ()
+    numbers: float | Sequence[float] = ()
     period: float | None = None
 
-    def __init__(
-        self,
-        pattern: str = "regular",
-        numbers: float | Sequence[float] = (),
-        period: float | None = None,
-    ) -> None:
-        if pattern not in PATTERNS:
-            raise ValueError(f"pattern: unknown {pattern!r}; one of {', '.join(PATTERNS)}")
-        own = tuple(np.atleast_1d(np.asarray(numbers, dtype=np.float64)).tolist())
-        if not PATTERNS[pattern].fits(own):
+    def __repr__(self) -> str:
+        return constructor_code(self)
+
+    def __post_init__(self) -> None:
+        if self.pattern not in PATTERNS:
+            raise ValueError(f"pattern: unknown {self.pattern!r}; one of {', '.join(PATTERNS)}")
+        pattern = PATTERNS[self.pattern]
+        own = tuple(np.atleast_1d(np.asarray(self.numbers, dtype=np.float64)).tolist())
+        if not pattern.fits(own):
             given = ", ".join(f"{value:g}" for value in own) or "none"
-            raise ValueError(f"{pattern} must be {PATTERNS[pattern].allowed}, got {given}")
-        object.__setattr__(self, "pattern", pattern)
+            raise ValueError(f"{self.pattern} must be {pattern.allowed}, got {given}")
         object.__setattr__(self, "numbers", own)
-        mean = None if period is None else number("period", positive("period", period))
-        object.__setattr__(self, "period", mean)
+        if self.period is not None:
+            object.__setattr__(self, "period", number("period", positive("period", self.period)))
 
     @property
     def common(self) -> bool:
         """Whether all tracks have the same times."""
-        return PATTERNS[self.pattern].draw is None
+        return not PATTERNS[self.pattern].random
 
     def times(self, time: Array, tracks: Sequence[np.random.SeedSequence]) -> Array:
         """Times of the scans, from the first of the target's own times until the last at most.
@@ -106,7 +105,7 @@ class Sampling:
         ValueError
             If fewer than two scans are left, or there are more than 10 million in all.
         """
-        if self.common and self.period is None:
+        if self == REGULAR:
             return time
         period = self._mean(time)
         intervals = math.floor((time[-1] - time[0]) / period * (1 + 1e-12))
@@ -121,13 +120,14 @@ class Sampling:
                 f"period must not give more than {MAX_SCANS} scans in all, got {period:g}, "
                 f"which gives {intervals + 1} in each of {count}"
             )
-        draw = PATTERNS[self.pattern].draw
-        if draw is None:
+        if self.pattern == "regular":
             return np.asarray(time[0] + period * np.arange(intervals + 1))
-        each = [draw(substream(track, TIMES), intervals, *self.numbers) for track in tracks]
+        draw, numbers = PATTERNS[self.pattern].draw, np.atleast_1d(self.numbers)
+        each = [draw(substream(track, TIMES), intervals, *numbers) for track in tracks[:count]]
         after = np.cumsum(np.stack(each, axis=1), axis=0)
         shares = np.concatenate([np.zeros((1, count)), after / after[-1]])
-        return np.asarray(time[0] + intervals * period * shares)
+        times: Array = time[0] + intervals * period * shares
+        return times[:, 0] if self.common else times
 
     def scan(self, first: int, time: Array) -> int:
         """The scan that is on average as late as scan `first` of the target's own times.
@@ -154,20 +154,21 @@ def _mean(time: Array) -> float:
 # ---------------------------------------------------------------- patterns
 
 
+def _regular(rng: np.random.Generator, count: int) -> Array:
+    return np.ones(count)
+
+
 def _jitter(rng: np.random.Generator, count: int, share: float) -> Array:
     late = share * rng.uniform(-1, 1, count + 1)
     return np.diff(np.arange(count + 1) + late)
 
 
 def _alternate(rng: np.random.Generator, count: int, one: float, other: float) -> Array:
-    turn = (np.arange(count) + rng.integers(2)) % 2
-    return np.where(turn == 0, one, other)
+    return np.where(np.arange(count) % 2 == 0, one, other)
 
 
 def _burst(rng: np.random.Generator, count: int, plots: float, gap: float) -> Array:
-    size = int(plots)
-    place = (np.arange(count) + rng.integers(size)) % size
-    return np.where(place == size - 1, gap, 1.0)
+    return np.where((np.arange(count) + 1) % int(plots) == 0, gap, 1.0)
 
 
 def _log_uniform(rng: np.random.Generator, count: int, low: float, high: float) -> Array:
@@ -187,20 +188,23 @@ class Pattern(NamedTuple):
         The numbers that it takes, in words.
     fits : callable
         Whether numbers are allowed.
-    draw : callable or None
-        Intervals of a track, in proportion to each other; None if they are equal.
+    draw : callable
+        Intervals of a track, in proportion to each other.
+    random : bool
+        Whether they differ from track to track.
     """
 
     allowed: str
     fits: Callable[[tuple[float, ...]], bool]
-    draw: Callable[..., Array] | None
+    draw: Callable[..., Array]
+    random: bool = False
 
 
 #: Patterns by name.
 PATTERNS = {
-    "regular": Pattern("without numbers", lambda own: not own, None),
+    "regular": Pattern("without numbers", lambda own: not own, _regular),
     "jitter": Pattern(
-        "a number > 0 and < 0.5", lambda own: len(own) == 1 and 0 < own[0] < 0.5, _jitter
+        "a number > 0 and < 0.5", lambda own: len(own) == 1 and 0 < own[0] < 0.5, _jitter, True
     ),
     "alternate": Pattern("two intervals > 0", _two, _alternate),
     "burst": Pattern(
@@ -209,7 +213,7 @@ PATTERNS = {
         _burst,
     ),
     "log-uniform": Pattern(
-        "two rising intervals > 0", lambda own: _two(own) and own[0] < own[1], _log_uniform
+        "two rising intervals > 0", lambda own: _two(own) and own[0] < own[1], _log_uniform, True
     ),
 }
 

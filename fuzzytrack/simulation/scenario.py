@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite, nonnegative, positive
-from fuzzytrack.reprs import summary
+from fuzzytrack.reprs import constructor_code, summary
 from fuzzytrack.simulation.noise import (
     DETECTION,
     OUTLIERS,
@@ -84,6 +84,9 @@ class PlotNoise:
     spread: float = 1.0
     outliers: tuple[float, float] = (0.0, 1.0)
     told: float = 1.0
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
 
     def __post_init__(self) -> None:
         deviation = positive("sigma", self.sigma).tolist()

@@ -238,6 +238,7 @@ def run_chunk(
         if runs.start == 0:
             _keep(part, k, result)
     if runs.start == 0:
+        part["sample_time"] = times.reshape(len(times), -1)[:, 0].copy()
         part["sample_truth"] = np.array(true[:, 0])
         part["sample_plots"] = plots.z[:, 0].copy()
     else:

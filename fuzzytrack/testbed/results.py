@@ -32,6 +32,8 @@ class Sample:
 
     Attributes
     ----------
+    time : ndarray, shape (n_steps,)
+        Times of its scans (s).
     truth, plots : ndarray, shape (n_steps, n_axes)
         True positions and plots (m); NaN where missed.
     predicted, filtered : ndarray, shape (n_trackers, n_steps, n_axes)
@@ -40,6 +42,7 @@ class Sample:
         Gains of each tracker.
     """
 
+    time: Array
     truth: Array
     plots: Array
     predicted: Array

@@ -1,118 +1,236 @@
-"""Tuned trackers ranked on random tracks, tuned for each set of them and for all sets at once."""
+"""Trackers ranked on random tracks, at a constant period and under all other conditions."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import operator
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
-from fuzzytrack.simulation.published import TRACK_SETS, track_set
+from fuzzytrack.simulation.published import TRACK_SETS
 from fuzzytrack.tasks import Progress
-from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.tuning.families import FAMILIES, Numbers
-from fuzzytrack.tuning.objective import prediction_mse
+from fuzzytrack.trackers.catalog import Trackers, as_trackers
+from fuzzytrack.trackers.lane_tracker import announce
+from fuzzytrack.tuning.scored_plots import scored_plots, squared_errors
+from fuzzytrack.tuning.variants import VARIANTS
+from fuzzytrack.version import __version__
+from fuzzytrack.yamltree import suggestion
 
-__all__ = ["Ranked", "rank"]
+__all__ = ["Change", "Ranking", "rank"]
 
 
-@dataclass(frozen=True, eq=False)
-class Ranked:
-    """One family, measured.
+@dataclass(frozen=True)
+class Change:
+    """How much larger the error of one tracker is than that of another, on the same plots.
 
     Attributes
     ----------
-    name : str
-        Of the family.
-    own : dict of str to float
-        RMSE in each set, tuned for it, in standard deviations of the noise.
-    single : dict of str to float
-        RMSE in each set, tuned once for all of them.
-    own_change, single_change : float
-        Relative change of the geometric mean over the sets against the reference family.
-    single_error : float
-        Standard error of `single_change`, from the spread over tracks.
+    value : float
+        Relative change of the geometric mean of the RMSE over the sets; negative is better.
+    error : float
+        Its standard error, from the spread over tracks of the paired difference.
     """
 
-    name: str
-    own: dict[str, float]
-    single: dict[str, float]
-    own_change: float
-    single_change: float
-    single_error: float
+    value: float
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Ranking:
+    """Errors of trackers on the same plots.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The trackers.
+    variants : tuple of str
+        The variants, see `fuzzytrack.tuning.VARIANTS`.
+    seed : int
+        Seed of tracks and noise.
+    squares : ndarray, shape (n_trackers, n_variants, 3, n_tracks)
+        Squared errors of each track of the sets ``report``, ``mixed`` and ``strong``, summed over
+        its scored plots, in units of the variance of the noise; infinite where a tracker diverged.
+    plots : ndarray of int, shape (n_variants, 3, n_tracks)
+        Number of scored plots.
+    """
+
+    names: tuple[str, ...]
+    variants: tuple[str, ...]
+    seed: int
+    squares: Array
+    plots: NDArray[np.int64]
 
     def __repr__(self) -> str:
-        return summary(self, "name", "own_change", "single_change", "own")
+        return summary(self, "names", "variants", "tracks", "seed")
+
+    @property
+    def tracks(self) -> int:
+        """Number of tracks in each set."""
+        return int(self.plots.shape[-1])
+
+    def rmse(self, name: str, variant: str) -> dict[str, float]:
+        """RMSE of the predictions in each set, in standard deviations of the noise.
+
+        Parameters
+        ----------
+        name, variant : str
+            Of a tracker and of a variant.
+
+        Raises
+        ------
+        ValueError
+            If it was not ranked.
+        """
+        which = self._variant(variant)
+        sums = self.squares[self._tracker(name), which].sum(axis=-1)
+        roots = np.sqrt(sums / self.plots[which].sum(axis=-1))
+        return dict(zip(TRACK_SETS, roots.tolist(), strict=True))
+
+    def change(self, name: str, reference: str, variant: str) -> Change:
+        """Error of a tracker against that of a reference.
+
+        Parameters
+        ----------
+        name, reference, variant : str
+            Of two trackers and of a variant.
+
+        Returns
+        -------
+        Change
+            Infinite if the tracker diverged, NaN if the reference did.
+
+        Raises
+        ------
+        ValueError
+            If one was not ranked.
+        """
+        which = self._variant(variant)
+        mine, theirs = (self.squares[self._tracker(one), which] for one in (name, reference))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            whole, of_theirs = mine.sum(axis=1), theirs.sum(axis=1)
+            ratio = math.exp(np.log(whole / of_theirs).mean() / 2)
+            # Delta method; both saw the same plots, so the spread is that of the differences.
+            spread = mine / whole[:, None] - theirs / of_theirs[:, None]
+            error = math.sqrt(self.tracks * spread.var(axis=1).sum()) / (2 * len(TRACK_SETS))
+        return Change(ratio - 1, ratio * error)
+
+    def to_json_dict(self, references: Sequence[str]) -> dict[str, Any]:
+        """The ranking in plain types, for JSON.
+
+        Parameters
+        ----------
+        references : sequence of str
+            Trackers with which all are compared.
+
+        Raises
+        ------
+        ValueError
+            If one was not ranked.
+        """
+        return {
+            "fuzzytrack": __version__,
+            "seed": self.seed,
+            "tracks": self.tracks,
+            "variants": {name: repr(VARIANTS[name]) for name in self.variants},
+            "rmse": {
+                name: {variant: self.rmse(name, variant) for variant in self.variants}
+                for name in self.names
+            },
+            "changes": {
+                reference: {name: self._changes(name, reference) for name in self.names}
+                for reference in references
+            },
+        }
+
+    def _changes(self, name: str, reference: str) -> dict[str, list[float]]:
+        found = {variant: self.change(name, reference, variant) for variant in self.variants}
+        return {variant: [each.value, each.error] for variant, each in found.items()}
+
+    def _tracker(self, name: str) -> int:
+        return _place(name, self.names, "tracker")
+
+    def _variant(self, name: str) -> int:
+        return _place(name, self.variants, "variant")
 
 
 def rank(
-    tuned: Mapping[str, Mapping[str, Numbers]],
+    trackers: Trackers,
     tracks: int,
     seed: int,
-    reference: str = "fixed α-β",
+    variants: Collection[str] = tuple(VARIANTS),
     progress: Progress | None = None,
-) -> list[Ranked]:
-    """Measure families of trackers on fresh tracks.
+) -> Ranking:
+    """Measure trackers on fresh random tracks.
 
     Parameters
     ----------
-    tuned : mapping of str to mapping of str to numbers
-        For each family, by name, its parameters for ``report``, ``mixed``, ``strong`` and ``all``;
-        an empty mapping for one without parameters.
+    trackers : mapping of str to Tracker or str, or sequence of str
+        The trackers by name, or what names them, see `fuzzytrack.trackers.catalog.as_trackers`. The
+        noise has a standard deviation of 1, and the mean time between scans is 1.
     tracks : int
-        Number of tracks in each set.
+        Number of tracks in each set, at least 1.
     seed : int
-        Seed of tracks and noise; different from that of the tuning.
-    reference : str
-        Family whose error the others are compared with.
+        Seed, not negative; another one than that with which the trackers were tuned.
+    variants : collection of str
+        Names out of `fuzzytrack.tuning.VARIANTS`; all of them unless given.
     progress : callable, optional
         Called with the share of the work that is done.
 
     Returns
     -------
-    list of Ranked
-        The best with a single tuning first.
+    Ranking
 
     Raises
     ------
     ValueError
-        If a family is unknown, or the reference is none of them.
+        If there is no tracker or no such tracker, a variant is unknown, or a number is out of
+        range.
+
+    Notes
+    -----
+    Predictions are scored at the plots received, from the third of a track on and not before the
+    first scored scan of its set. All variants have the same tracks, and all trackers the same
+    plots.
+
+    Examples
+    --------
+    >>> from fuzzytrack.tuning import rank
+    >>> ranking = rank(["fixed:alpha=.5:beta=.4", "kalman-cv:sigma_v=.9"], 4, 1, ["constant T"])
+    >>> list(ranking.rmse("kalman-cv:sigma_v=.9", "constant T"))
+    ['report', 'mixed', 'strong']
     """
-    for name in (reference, *tuned):
-        if name not in FAMILIES or name not in tuned:
-            raise ValueError(f"tuned: needs families out of {', '.join(FAMILIES)}; got {name!r}")
-    sets = [track_set(name, tracks, seed) for name in TRACK_SETS]
-    errors: dict[tuple[str, str], list[Array]] = {}
-    for number, (name, numbers) in enumerate(tuned.items(), 1):
-        for kind in ("own", "single"):
-            errors[name, kind] = [
-                prediction_mse(_made(name, numbers, kind, s.name), s, seed) for s in sets
-            ]
-        if progress is not None:
-            progress(number / len(tuned))
-    found = [_ranked(name, errors, reference) for name in tuned]
-    return sorted(found, key=lambda each: each.single_change)
+    if operator.index(tracks) < 1:
+        raise ValueError(f"tracks must be at least 1, got {tracks}")
+    if operator.index(seed) < 0:
+        raise ValueError(f"seed must not be negative, got {seed}")
+    made = as_trackers(trackers)
+    chosen = tuple(variants)
+    for name in chosen:
+        _place(name, tuple(VARIANTS), "variant")
+    squares = np.zeros((len(made), len(chosen), len(TRACK_SETS), tracks))
+    counts = np.zeros((len(chosen), len(TRACK_SETS), tracks), dtype=np.int64)
+    done, every = 0, len(made) * len(chosen) * len(TRACK_SETS)
+    for tracker in made.values():
+        announce(tracker, 2, every * tracks)
+    for i, variant in enumerate(chosen):
+        for j, name in enumerate(TRACK_SETS):
+            plots = scored_plots(name, VARIANTS[variant], tracks, seed)
+            counts[i, j] = plots.scored.sum(axis=0)
+            for k, tracker in enumerate(made.values()):
+                squares[k, i, j] = squared_errors(tracker, plots)
+                done += 1
+                if progress is not None:
+                    progress(done / every)
+    return Ranking(tuple(made), chosen, seed, squares, counts)
 
 
-def _made(name: str, numbers: Mapping[str, Numbers], kind: str, set_name: str) -> Tracker:
-    family = FAMILIES[name]
-    return family.make(numbers[set_name if kind == "own" else "all"] if family.start else ())
-
-
-def _ranked(name: str, errors: dict[tuple[str, str], list[Array]], reference: str) -> Ranked:
-    def change(kind: str) -> tuple[float, float]:
-        logs, variance = 0.0, 0.0
-        for mine, theirs in zip(errors[name, kind], errors[reference, kind], strict=True):
-            logs += math.log(mine.mean() / theirs.mean()) / 2
-            # Delta method; both saw the same tracks, so the spread is that of the differences.
-            spread = mine / mine.mean() - theirs / theirs.mean()
-            variance += spread.var() / (4 * len(spread))
-        sets = len(errors[name, kind])
-        return math.exp(logs / sets) - 1, math.sqrt(variance) / sets
-
-    def roots(kind: str) -> dict[str, float]:
-        means = (math.sqrt(each.mean()) for each in errors[name, kind])
-        return dict(zip(TRACK_SETS, means, strict=True))
-
-    return Ranked(name, roots("own"), roots("single"), change("own")[0], *change("single"))
+def _place(name: str, known: tuple[str, ...], what: str) -> int:
+    if name not in known:
+        raise ValueError(f"unknown {what} {name!r}{suggestion(name, known)}")
+    return known.index(name)

@@ -55,6 +55,7 @@ def made_up(names=NAMES, runs=6, n_steps=9, n_axes=2, *, nis=True, velocity=True
         nis=rng.chisquare(n_axes, shape[:3]) if nis else None,
         nees=rng.chisquare(n_axes, shape[:3]) if nis else None,
         sample=Sample(
+            time=2.0 * np.arange(n_steps),
             truth=truth,
             plots=truth + measured[0],
             predicted=truth + predicted[:, 0],

@@ -206,7 +206,12 @@ def test_a_sampled_set():
     expected = track_set("mixed", 5, 3, Sampling("alternate", (1, 10), 2.0))
     np.testing.assert_array_equal(scenario.time, expected.time)
     np.testing.assert_array_equal(scenario.position, expected.position)
+    assert scenario.time.shape == (30,)
     assert scenario.first_scored == expected.first_scored == 4
+    drawn = sampled("{set: mixed, tracks: 5, seed: 3}", "{jitter: 0.2}")
+    expected = track_set("mixed", 5, 3, Sampling("jitter", 0.2))
+    np.testing.assert_array_equal(drawn.time, expected.time)
+    np.testing.assert_array_equal(drawn.position, expected.position)
 
 
 def test_an_experiment_with_times_of_each_run(tmp_path):
@@ -215,6 +220,7 @@ def test_an_experiment_with_times_of_each_run(tmp_path):
     trackers = ["fixed:alpha=0.5:beta=0.2", "kalman-cv:sigma_v=1"]
     results = monte_carlo(scenario, trackers, 5, 1)
     np.testing.assert_array_equal(results.time, scenario.time.mean(axis=1))
+    np.testing.assert_array_equal(results.sample.time, scenario.time[:, 0])
     for run in range(5):
         times = scenario.time[:, run % 3]
         z = scenario.position[:, run % 3] + results.measured[run]
@@ -260,9 +266,9 @@ def test_where_sampling_does_not_go(tmp_path):
         "s.yaml:5:11: sampling needs a target that is known at all times"
     )
     target = "target: {set: mixed, tracks: 9000}\n"
-    text = f"{HEAD}{target}{SENSORS}sampling: {{burst: [2, 5], period: 0.01}}\n"
+    text = f"{HEAD}{target}{SENSORS}sampling: {{jitter: 0.2, period: 0.01}}\n"
     assert complaint(text).startswith(
-        "s.yaml:5:35: period must not give more than 10000000 scans in all, got 0.01, which gives "
+        "s.yaml:5:33: period must not give more than 10000000 scans in all, got 0.01, which gives "
         "5901 in each of 9000"
     )
 

@@ -94,6 +94,7 @@ def test_errors_run_by_run():
                 for name in ("alpha", "beta", "gamma"):
                     array = getattr(found.sample, name)
                     np.testing.assert_array_equal(array[k], getattr(result.gains, name))
+                np.testing.assert_array_equal(found.sample.time, scenario.time)
                 np.testing.assert_array_equal(found.sample.plots, z)
                 np.testing.assert_array_equal(found.sample.truth, scenario.position)
 

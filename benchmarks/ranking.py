@@ -1,0 +1,201 @@
+"""Which tracker is best? Every scheduler of the package on fresh random tracks.
+
+    python -m benchmarks.ranking --tracks 3000 -o ranking.json
+    python -m benchmarks.ranking --tracks 3000 --variants "constant T" --trackers "IMM CV/CA,bank"
+
+The first column is the change of the geometric mean of the RMSE over the sets report, mixed and
+strong at constant T against fixed gains of 0.543 and 0.548, the others are the change against the
+Kalman filter of constant velocity, tuned once at constant T. Tables of paired differences follow.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.ranked import Conditions, ranked
+from benchmarks.work import ROOT
+from fuzzytrack.cli.output import progress, write_json
+from fuzzytrack.json_types import plain
+from fuzzytrack.tasks import part
+from fuzzytrack.tuning import VARIANTS, rank
+from fuzzytrack.yamltree import suggestion
+
+CONSTANT = "constant T"
+FIXED, KALMAN = "fixed .543 .548", "Kalman CV"
+AGAINST = ("IMM CV/CA",)
+# Times as large an error as the reference from which on only that is shown.
+_FAR, _LOST = 3.0, 1000.0
+# Variants of the first table; the others are in the second.
+_REGULAR = (CONSTANT, "T=.5", "T=2", "Pd.9", "Pd.7", "Pd.5", "Pd.3")
+
+Table = list[list[str]]
+
+
+def measured(
+    trackers: Mapping[str, str], tracks: int, others: int, seed: int, variants: Sequence[str]
+) -> dict[str, Any]:
+    """Rank the trackers, in plain types: `tracks` a set at constant T, `others` else."""
+    references = [name for name in (FIXED, KALMAN, *AGAINST) if name in trackers]
+    named = {name: spec.replace(f"{ROOT}/", "") for name, spec in trackers.items()}
+    found: dict[str, Any] = {"trackers": named, "rankings": []}
+    jobs = [(tracks, [v for v in variants if v == CONSTANT])]
+    jobs.append((others, [v for v in variants if v != CONSTANT]))
+    work = [number * len(chosen) for number, chosen in jobs]
+    with progress("ranking") as watch:
+        for k, (number, chosen) in enumerate(jobs):
+            if chosen:
+                low, high = (sum(work[:m]) / sum(work) for m in (k, k + 1))
+                ranking = rank(trackers, number, seed, chosen, part(watch, low, high))
+                found["rankings"].append(ranking.to_json_dict(references))
+    return rounded(plain(found))  # type: ignore[no-any-return]
+
+
+def rounded(value: Any) -> Any:
+    """Numbers of a value in the types of JSON to six digits."""
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [rounded(item) for item in value]
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def changes(found: Mapping[str, Any], reference: str) -> dict[str, dict[str, list[float | None]]]:
+    """Change and standard error of every tracker in every variant against a reference."""
+    merged: dict[str, dict[str, list[float | None]]] = {name: {} for name in found["trackers"]}
+    for ranking in found["rankings"]:
+        for name, each in ranking["changes"].get(reference, {}).items():
+            merged[name].update(each)
+    return merged
+
+
+def shown(change: Sequence[float | None], digits: int = 1) -> str:
+    """A change in percent; from three times the error on, the factor."""
+    value, error = change
+    if value is None or value + 1 > _LOST:
+        return "diverges"
+    if value + 1 > _FAR:
+        return f"×{value + 1:.3g}"
+    text = f"{100 * value:+.{digits}f}".replace("-", "−")
+    return text if error is None else f"{text} ± {100 * error:.{digits}f}"
+
+
+def main_table(found: Mapping[str, Any], variants: Sequence[str], errors: bool) -> Table:
+    """Rows of all trackers, the best at constant T first; a head in front."""
+    fixed, kalman = changes(found, FIXED), changes(found, KALMAN)
+    columns = [(f"{v} vs fixed" if v == CONSTANT else v, fixed if v == CONSTANT else kalman, v)
+               for v in variants]  # fmt: skip
+    rows = [["", *(head for head, _, _ in columns)]]
+    for name in ordered(found):
+        cells = [table[name].get(v) for _, table, v in columns]
+        rows.append([name, *("" if c is None else shown(c if errors else [c[0], None])
+                             for c in cells)])  # fmt: skip
+    return rows
+
+
+def paired_table(found: Mapping[str, Any], reference: str, variants: Sequence[str]) -> Table:
+    """Paired differences against a reference, with standard errors; a head in front."""
+    table = changes(found, reference)
+    rows = [[f"against {reference}, %", *variants]]
+    for name in ordered(found):
+        if name != reference:
+            rows.append([name, *(shown(table[name][v], 2) for v in variants if v in table[name])])
+    return rows
+
+
+def ordered(found: Mapping[str, Any]) -> list[str]:
+    """Names, the best at constant T first, or in the first variant that was ranked."""
+    table = changes(found, KALMAN if KALMAN in found["trackers"] else FIXED)
+
+    def place(name: str) -> float:
+        value = next(iter(table[name].values()), [None])[0]
+        return math.inf if value is None else value
+
+    return sorted(found["trackers"], key=place)
+
+
+def lines(table: Table) -> Iterator[str]:
+    """A table as text for a terminal."""
+    widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
+    for row in table:
+        first, *rest = (cell.ljust(w) if k == 0 else cell.rjust(w)
+                        for k, (cell, w) in enumerate(zip(row, widths, strict=True)))  # fmt: skip
+        yield "  ".join([first, *rest])
+
+
+def markdown(table: Table) -> str:
+    """A table as Markdown."""
+    head, *rows = table
+    ruler = ["---", *("--:" for _ in head[1:])]
+    return "\n".join("| " + " | ".join(row) + " |" for row in (head, ruler, *rows)) + "\n"
+
+
+def chosen(text: str | None, known: Sequence[str], what: str) -> list[str]:
+    """Names out of a text with commas; all of them unless given."""
+    names = list(known) if text is None else [name.strip() for name in text.split(",")]
+    for name in names:
+        if name not in known:
+            raise SystemExit(f"error: --{what}: unknown {name!r}{suggestion(name, known)}")
+    return names
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        prog="benchmarks.ranking",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--tracks", type=int, default=300, help="in each set, at constant T")
+    parser.add_argument("--others", type=int, help="in each set, in other variants; as --tracks")
+    parser.add_argument("--seed", type=int, default=20)
+    parser.add_argument("--variants", metavar="A,B,C", help="all of them unless given")
+    parser.add_argument("--trackers", metavar="A,B,C", help="all of them unless given")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE.json", help="write all figures")
+    parser.add_argument("--docs", action="store_true", help="write the tables of docs/ranking.md")
+    given = parser.parse_args(arguments)
+    everyone = ranked(Conditions())
+    names = chosen(given.trackers, list(everyone), "trackers")
+    names += [name for name in (FIXED, KALMAN) if name not in names]
+    variants = chosen(given.variants, list(VARIANTS), "variants")
+    trackers = {name: everyone[name] for name in names}
+    others = given.tracks if given.others is None else given.others
+    found = measured(trackers, given.tracks, others, given.seed, variants)
+    for each in parts(found, variants):
+        print("\n".join(lines(each)), end="\n\n")
+    if given.output:
+        write_json(given.output, found, 1)
+    if given.docs:
+        write_json(ROOT / "docs" / "ranking.json", found, 1)
+        (ROOT / "docs" / "ranking-tables.txt").write_text(described(found, variants))
+    return 0
+
+
+def parts(found: Mapping[str, Any], variants: Sequence[str]) -> Iterator[Table]:
+    """The tables of a ranking."""
+    groups = ([v for v in variants if v in _REGULAR], [v for v in variants if v not in _REGULAR])
+    for group in filter(None, groups):
+        yield main_table(found, group, errors=True)
+    for reference in AGAINST:
+        if reference in found["trackers"]:
+            for group in filter(None, groups):
+                yield paired_table(found, reference, group)
+
+
+def described(found: Mapping[str, Any], variants: Sequence[str]) -> str:
+    """The tables in Markdown, with how they were measured."""
+    how = "; ".join(
+        f"{each['tracks']} tracks a set in {len(each['variants'])} "
+        f"variant{'s' * (len(each['variants']) != 1)}"
+        for each in found["rankings"]
+    )
+    seed = found["rankings"][0]["seed"]
+    tables = "\n".join(markdown(table) for table in parts(found, variants))
+    return f"*Measured on {how}, seed {seed}.*\n\n{tables}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
