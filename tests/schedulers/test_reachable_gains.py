@@ -95,6 +95,16 @@ def test_a_default_outside_of_the_universe_counts(name):
     assert found.sequence[:, column].max() >= least
 
 
+def test_a_period_is_refused_where_a_default_has_a_negative_pole():
+    rules = ft.load_rulebase("stiffness-damping")
+    far = zip(rules.outputs, (3.0, 2.0), strict=True)
+    changed = replace(rules, outputs=tuple(replace(v, default=value) for v, value in far))
+    assert certify(rules, period=4).verdict == "certified"
+    for call in (certify, ft.FuzzyScheduler):
+        with pytest.raises(ft.RuleBaseError, match="at stiffness=3, damping=2, the largest"):
+            call(changed, period=4)
+
+
 def test_what_cannot_be_certified():
     with pytest.raises(ft.RuleBaseError, match="tipper cannot be certified: needed are outputs"):
         certify(ft.load_rulebase("tipper"))
