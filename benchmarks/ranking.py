@@ -14,6 +14,7 @@ import argparse
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from benchmarks.ranked import Conditions, ranked
 from benchmarks.work import ROOT
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.json_types import plain
+from fuzzytrack.simulation.published import TRACK_SETS
 from fuzzytrack.tasks import part
 from fuzzytrack.tuning import VARIANTS, rank
 from fuzzytrack.yamltree import suggestion
@@ -36,21 +38,34 @@ _REGULAR = (CONSTANT, "T=.5", "T=2", "Pd.9", "Pd.7", "Pd.5", "Pd.3")
 Table = list[list[str]]
 
 
-def measured(
-    trackers: Mapping[str, str], tracks: int, others: int, seed: int, variants: Sequence[str]
-) -> dict[str, Any]:
-    """Rank the trackers, in plain types: `tracks` a set at constant T, `others` else."""
+@dataclass(frozen=True)
+class Job:
+    """Tracks on which all trackers are run."""
+
+    tracks: int
+    variants: Sequence[str]
+    sets: Sequence[str] = TRACK_SETS
+
+
+def jobs(tracks: int, others: int, variants: Sequence[str]) -> Iterator[Job]:
+    """Constant T, the other variants, and targets for which no tracker was tuned."""
+    yield Job(tracks, [v for v in variants if v == CONSTANT])
+    yield Job(others, [v for v in variants if v != CONSTANT])
+    yield Job(others, [v for v in variants if v in (CONSTANT, "jitter")], ("weaving",))
+
+
+def measured(trackers: Mapping[str, str], work: Sequence[Job], seed: int) -> dict[str, Any]:
+    """Rank the trackers, in plain types."""
     references = [name for name in (FIXED, KALMAN, *AGAINST) if name in trackers]
     named = {name: spec.replace(f"{ROOT}/", "") for name, spec in trackers.items()}
     found: dict[str, Any] = {"trackers": named, "rankings": []}
-    jobs = [(tracks, [v for v in variants if v == CONSTANT])]
-    jobs.append((others, [v for v in variants if v != CONSTANT]))
-    work = [number * len(chosen) for number, chosen in jobs]
+    sizes = [job.tracks * len(job.variants) * len(job.sets) for job in work]
     with progress("ranking") as watch:
-        for k, (number, chosen) in enumerate(jobs):
-            if chosen:
-                low, high = (sum(work[:m]) / sum(work) for m in (k, k + 1))
-                ranking = rank(trackers, number, seed, chosen, part(watch, low, high))
+        for k, job in enumerate(work):
+            if job.variants:
+                low, high = (sum(sizes[:m]) / sum(sizes) for m in (k, k + 1))
+                share = part(watch, low, high)
+                ranking = rank(trackers, job.tracks, seed, job.variants, job.sets, share)
                 found["rankings"].append(ranking.to_json_dict(references))
     return rounded(plain(found))  # type: ignore[no-any-return]
 
@@ -64,12 +79,21 @@ def rounded(value: Any) -> Any:
     return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
-def changes(found: Mapping[str, Any], reference: str) -> dict[str, dict[str, list[float | None]]]:
-    """Change and standard error of every tracker in every variant against a reference."""
-    merged: dict[str, dict[str, list[float | None]]] = {name: {} for name in found["trackers"]}
+Figures = dict[str, dict[str, list[float | None]]]
+
+
+def changes(found: Mapping[str, Any], reference: str) -> Figures:
+    """Change and standard error of every tracker in every column against a reference.
+
+    A column is a variant, or another set than the usual ones with its variant.
+    """
+    merged: Figures = {name: {} for name in found["trackers"]}
     for ranking in found["rankings"]:
+        usual = list(ranking["sets"]) == list(TRACK_SETS)
         for name, each in ranking["changes"].get(reference, {}).items():
-            merged[name].update(each)
+            for variant, change in each.items():
+                column = variant if usual else f"{', '.join(ranking['sets'])}, {variant}"
+                merged[name][column] = change
     return merged
 
 
@@ -84,26 +108,22 @@ def shown(change: Sequence[float | None], digits: int = 1) -> str:
     return text if error is None else f"{text} ± {100 * error:.{digits}f}"
 
 
-def main_table(found: Mapping[str, Any], variants: Sequence[str], errors: bool) -> Table:
+def main_table(found: Mapping[str, Any], columns: Sequence[str]) -> Table:
     """Rows of all trackers, the best at constant T first; a head in front."""
-    fixed, kalman = changes(found, FIXED), changes(found, KALMAN)
-    columns = [(f"{v} vs fixed" if v == CONSTANT else v, fixed if v == CONSTANT else kalman, v)
-               for v in variants]  # fmt: skip
-    rows = [["", *(head for head, _, _ in columns)]]
+    tables = {column: changes(found, FIXED if column == CONSTANT else KALMAN) for column in columns}
+    rows = [["", *(f"{c} vs fixed" if c == CONSTANT else c for c in columns)]]
     for name in ordered(found):
-        cells = [table[name].get(v) for _, table, v in columns]
-        rows.append([name, *("" if c is None else shown(c if errors else [c[0], None])
-                             for c in cells)])  # fmt: skip
+        rows.append([name, *(shown(tables[column][name][column]) for column in columns)])
     return rows
 
 
-def paired_table(found: Mapping[str, Any], reference: str, variants: Sequence[str]) -> Table:
+def paired_table(found: Mapping[str, Any], reference: str, columns: Sequence[str]) -> Table:
     """Paired differences against a reference, with standard errors; a head in front."""
     table = changes(found, reference)
-    rows = [[f"against {reference}, %", *variants]]
+    rows = [[f"against {reference}, %", *columns]]
     for name in ordered(found):
         if name != reference:
-            rows.append([name, *(shown(table[name][v], 2) for v in variants if v in table[name])])
+            rows.append([name, *(shown(table[name][column], 2) for column in columns)])
     return rows
 
 
@@ -163,38 +183,39 @@ def main(arguments: list[str] | None = None) -> int:
     variants = chosen(given.variants, list(VARIANTS), "variants")
     trackers = {name: everyone[name] for name in names}
     others = given.tracks if given.others is None else given.others
-    found = measured(trackers, given.tracks, others, given.seed, variants)
-    for each in parts(found, variants):
+    found = measured(trackers, list(jobs(given.tracks, others, variants)), given.seed)
+    for each in parts(found):
         print("\n".join(lines(each)), end="\n\n")
     if given.output:
         write_json(given.output, found, 1)
     if given.docs:
         write_json(ROOT / "docs" / "ranking.json", found, 1)
-        (ROOT / "docs" / "ranking-tables.txt").write_text(described(found, variants))
+        (ROOT / "docs" / "ranking-tables.txt").write_text(described(found))
     return 0
 
 
-def parts(found: Mapping[str, Any], variants: Sequence[str]) -> Iterator[Table]:
+def parts(found: Mapping[str, Any]) -> Iterator[Table]:
     """The tables of a ranking."""
-    groups = ([v for v in variants if v in _REGULAR], [v for v in variants if v not in _REGULAR])
+    columns = list(next(iter(changes(found, KALMAN).values())))
+    groups = ([c for c in columns if c in _REGULAR], [c for c in columns if c not in _REGULAR])
     for group in filter(None, groups):
-        yield main_table(found, group, errors=True)
+        yield main_table(found, group)
     for reference in AGAINST:
         if reference in found["trackers"]:
             for group in filter(None, groups):
                 yield paired_table(found, reference, group)
 
 
-def described(found: Mapping[str, Any], variants: Sequence[str]) -> str:
+def described(found: Mapping[str, Any]) -> str:
     """The tables in Markdown, with how they were measured."""
     how = "; ".join(
-        f"{each['tracks']} tracks a set in {len(each['variants'])} "
+        f"{each['tracks']} tracks of {', '.join(each['sets'])} in {len(each['variants'])} "
         f"variant{'s' * (len(each['variants']) != 1)}"
         for each in found["rankings"]
     )
     seed = found["rankings"][0]["seed"]
-    tables = "\n".join(markdown(table) for table in parts(found, variants))
-    return f"*Measured on {how}, seed {seed}.*\n\n{tables}"
+    tables = "\n".join(markdown(table) for table in parts(found))
+    return f"*Measured on {how}; seed {seed}.*\n\n{tables}"
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.ranked import Conditions, ranked
-from benchmarks.ranking import AGAINST, KALMAN, Table, lines, rounded, shown
+from benchmarks.ranking import AGAINST, KALMAN, Table, lines, markdown, rounded, shown
 from benchmarks.work import ROOT
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.io.recording import read_tracks
@@ -88,7 +88,7 @@ def change(found: Comparison, name: str, reference: str) -> list[float]:
 def table(found: Mapping[str, Any]) -> Table:
     """RMSE and changes of all trackers, a head in front; the best in the first case first."""
     cases = found["cases"]
-    heads = [f"{name}, {head}" for name in cases for head in ("m", *(f"% vs {KALMAN}",))]
+    heads = [f"{name}, {head}" for name in cases for head in ("m", f"% vs {KALMAN}")]
     first = next(iter(cases.values()))
     rows = [["", *heads]]
     for name in sorted(first["rmse"], key=lambda each: first["rmse"][each] or math.inf):
@@ -111,6 +111,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--runs", type=int, default=60, help="of simulated noise")
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.json", help="write all figures")
+    parser.add_argument("--docs", action="store_true", help="write the table of docs/ranking.md")
     given = parser.parse_args(arguments)
     cases = {}
     with progress("tracking") as watch:
@@ -125,6 +126,10 @@ def main(arguments: list[str] | None = None) -> int:
     print("\n".join(lines(table(found))))
     if given.output:
         write_json(given.output, found, 1)
+    if given.docs:
+        (ROOT / "docs" / "ranking-recorded.txt").write_text(
+            f"*{given.runs} runs, seed {given.seed}.*\n\n{markdown(table(found))}"
+        )
     return 0
 
 

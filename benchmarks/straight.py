@@ -2,9 +2,9 @@
 
     python -m benchmarks.straight [--tracks 1000] [-o straight.json]
 
-A target on a straight line, intervals log-uniform from one to ten, probability of detection 0.4. A
-track is lost if a prediction at a plot after the hundredth is wrong by more than 100 standard
-deviations of the noise.
+A target on a straight line, random intervals of which the longest is ten times the shortest, with
+the mean for which the trackers are set, and probability of detection 0.4. A track is lost if a
+prediction at a plot after the hundredth is wrong by more than 100 standard deviations of the noise.
 """
 
 from __future__ import annotations
@@ -12,12 +12,15 @@ from __future__ import annotations
 import argparse
 import sys
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.ranked import Conditions, ranked
+from benchmarks.ranking import Table, lines, markdown
+from benchmarks.work import ROOT
 from fuzzytrack.arrays import Array
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.simulation.noise import streams
@@ -28,15 +31,13 @@ from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers
 
 SCANS, PLOTS, FAR = 500, 100, 100.0
-# The mean of intervals that are log-uniform from 1 to 10.
-PERIOD = 9 / np.log(10)
 SAMPLING, SENSORS = Sampling("log-uniform", (1, 10)), PlotNoise(1.0, detection=0.4)
 
 
 def lost(tracker: Tracker, tracks: int, seed: int) -> tuple[float, bool]:
     """Share of tracks that are lost, and whether the run warned."""
     runs = streams(seed, tracks)
-    times = SAMPLING.times(PERIOD * np.arange(SCANS), runs)
+    times = SAMPLING.times(np.arange(float(SCANS)), runs)
     _, truth = constant_velocity(speed=3.0, heading=0.6, at=times)
     plots = SENSORS.measure(truth, runs)
     with warnings.catch_warnings(record=True) as said, np.errstate(all="ignore"):
@@ -59,6 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--tracks", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.json", help="write all figures")
+    parser.add_argument("--docs", action="store_true", help="write the table of docs/ranking.md")
     given = parser.parse_args(arguments)
     trackers = as_trackers(ranked(Conditions()))
     found: dict[str, Any] = {"tracks": given.tracks, "seed": given.seed, "lost": {}}
@@ -66,11 +68,22 @@ def main(arguments: list[str] | None = None) -> int:
         for number, (name, tracker) in enumerate(trackers.items(), 1):
             share, warned = lost(tracker, given.tracks, given.seed)
             found["lost"][name] = {"share": share, "warned": warned}
-            print(f"{name:30}{100 * share:7.1f} %{'  with a warning' * warned}")
             watch(number / len(trackers))
+    print("\n".join(lines(table(found))))
     if given.output:
         write_json(given.output, found, 1)
+    if given.docs:
+        (ROOT / "docs" / "ranking-straight.txt").write_text(markdown(table(found)))
     return 0
+
+
+def table(found: Mapping[str, Any]) -> Table:
+    """Share that each tracker loses, the least first; a head in front."""
+    rows = sorted(found["lost"].items(), key=lambda item: item[1]["share"])
+    return [
+        ["", "tracks lost, %", "says so when run"],
+        *([name, f"{100 * each['share']:.1f}", "yes" * each["warned"]] for name, each in rows),
+    ]
 
 
 if __name__ == "__main__":

@@ -51,8 +51,10 @@ def test_the_ranking_is_printed_and_written(tmp_path, capsys):
     found = json.loads(file.read_text())
     trackers = ["IMM CV/CA", "growing memory", "fixed .543 .548", "Kalman CV"]
     assert list(found["trackers"]) == trackers
-    constant, others = found["rankings"]
-    assert (constant["tracks"], others["tracks"]) == (3, 2)
+    constant, others, weaving = found["rankings"]
+    assert (constant["tracks"], others["tracks"], weaving["tracks"]) == (3, 2, 2)
+    assert weaving["sets"] == ["weaving"]
+    assert list(weaving["variants"]) == ["constant T", "jitter"]
     expected = rank(found["trackers"], 3, 4, ["constant T"])
     change = expected.change("IMM CV/CA", "fixed .543 .548", "constant T")
     assert constant["changes"]["fixed .543 .548"]["IMM CV/CA"]["constant T"] == [
@@ -62,6 +64,7 @@ def test_the_ranking_is_printed_and_written(tmp_path, capsys):
     row = next(line for line in text.splitlines() if line.startswith("IMM CV/CA"))
     assert f"{100 * abs(change.value):.1f} ± {100 * change.error:.1f}" in row
     assert "against IMM CV/CA, %" in text
+    assert "weaving, jitter" in text
 
 
 def test_figures_as_they_are_shown():
@@ -121,3 +124,17 @@ def test_straight_tracks_that_are_lost():
     assert lost(make_tracker("kalman-cv:sigma_v=0.87"), 6, 3) == (0.0, False)
     share, _ = lost(make_tracker("fixed:alpha=1.3:beta=1.2"), 6, 3)
     assert share == 1.0
+
+
+def test_straight_tracks_as_a_table(tmp_path, capsys, monkeypatch):
+    from benchmarks import straight
+
+    chosen = {"fixed": "fixed:alpha=1.3:beta=1.2", "Kalman CV": "kalman-cv:sigma_v=0.87"}
+    monkeypatch.setattr(straight, "ranked", lambda conditions: chosen)
+    file = tmp_path / "s.json"
+    assert straight.main(["--tracks", "3", "-o", str(file)]) == 0
+    found = json.loads(file.read_text())
+    assert found["lost"]["fixed"]["share"] == 1.0
+    text = capsys.readouterr().out.splitlines()
+    assert [line.split("  ")[0] for line in text[1:]] == ["Kalman CV", "fixed"]
+    assert "100.0" in text[2]

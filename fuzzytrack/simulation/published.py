@@ -26,6 +26,7 @@ from fuzzytrack.simulation.trajectories import (
 )
 
 __all__ = [
+    "ALL_SETS",
     "MANEUVERS",
     "TRACK_SETS",
     "TrackSet",
@@ -47,7 +48,9 @@ _STARTS = {
 }
 MANEUVERS = tuple(_STARTS)
 
+#: Sets of random tracks by which trackers are tuned and ranked, and all sets.
 TRACK_SETS = ("report", "mixed", "strong")
+ALL_SETS = (*TRACK_SETS, "weaving")
 
 
 # ---------------------------------------------------------------- single tracks
@@ -287,13 +290,15 @@ def track_set(name: str, tracks: int, seed: int, sampling: Sampling = REGULAR) -
 
     Parameters
     ----------
-    name : {"report", "mixed", "strong"}
+    name : {"report", "mixed", "strong", "weaving"}
         ``report``: the maneuvers M1 to M4 of Llinas et al. (1998) in turn, 20 scans, with speeds of
         3 to 9 m/s, accelerations of 0.002 to 0.006 m/s² and radii of 2500 to 7000 m, to the left,
         at T = 60 s and noise σ of 115 m. ``mixed``: 60 scans, straight legs alternating with
         maneuvers, each of 8 to 20 scans; each track has one acceleration a, with a T²/σ from 0.1 to
         1, uniform in its logarithm. ``strong``: the same with a T²/σ from 1 to 3, and three times
-        as fast.
+        as fast. ``weaving``: 60 scans of a target that never flies straight, but weaves about a
+        straight course along a sine of a period of 12 to 40 T; its largest acceleration a has a
+        T²/σ from 0.1 to 3, uniform in its logarithm. The trackers were not tuned for these.
     tracks : int
         Number of tracks, at least 1.
     seed : int
@@ -323,8 +328,8 @@ def track_set(name: str, tracks: int, seed: int, sampling: Sampling = REGULAR) -
     >>> track_set("mixed", 8, seed=1).position.shape
     (60, 8, 2)
     """
-    if name not in TRACK_SETS:
-        raise ValueError(f"name: unknown set {name!r}; one of {', '.join(TRACK_SETS)}")
+    if name not in ALL_SETS:
+        raise ValueError(f"name: unknown set {name!r}; one of {', '.join(ALL_SETS)}")
     number = operator.index(tracks)
     if number < 1:
         raise ValueError(f"tracks must be at least 1, got {number}")
@@ -340,6 +345,9 @@ def track_set(name: str, tracks: int, seed: int, sampling: Sampling = REGULAR) -
     if name == "report":
         kinds = [MANEUVERS[k % len(MANEUVERS)] for k in range(number)]
         found = [_report(*track) for track in zip(kinds, draws, each, strict=True)]
+    elif name == "weaving":
+        kinds = [name] * number
+        found = [_weave(*track) for track in zip(draws, each, strict=True)]
     else:
         kinds = [name] * number
         found = [_legs(*track, *_STRENGTHS[name], scans) for track in zip(draws, each, strict=True)]
@@ -352,6 +360,15 @@ def _report(kind: str, rng: np.random.Generator, at: Array) -> Array:
     radius, heading = rng.uniform(2500, 7000), rng.uniform(0, 2 * math.pi)
     start = (0.0, 0.0)
     return _llinas(kind, speed, acceleration, radius, heading, start, 60.0 * at)[1] / 115.0
+
+
+def _weave(rng: np.random.Generator, at: Array) -> Array:
+    size = math.exp(rng.uniform(math.log(0.1), math.log(3.0)))
+    rate, phase = 2 * math.pi / rng.uniform(12, 40), rng.uniform(0, 2 * math.pi)
+    speed, heading = rng.uniform(1.5, 15), rng.uniform(0, 2 * math.pi)
+    along, across = speed * at, size / rate**2 * (np.sin(rate * at + phase) - math.sin(phase))
+    cos, sin = math.cos(heading), math.sin(heading)
+    return np.stack([along * cos - across * sin, along * sin + across * cos], axis=1)
 
 
 # Range of a T²/σ, and of the first speed, in σ/T.

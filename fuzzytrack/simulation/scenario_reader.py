@@ -16,8 +16,8 @@ from fuzzytrack.errors import FileError
 from fuzzytrack.io.recording import read_tracks
 from fuzzytrack.simulation.noise import Noise, streams
 from fuzzytrack.simulation.published import (
+    ALL_SETS,
     MANEUVERS,
-    TRACK_SETS,
     kim_lee,
     llinas_maneuver,
     s3,
@@ -278,7 +278,7 @@ class ScenarioReader:
 
     def _set(self, node: Node, sampling: Sampling) -> Target:
         fields = self.document.fields(node, "a set of targets", ("set", "tracks"), ("seed",))
-        word = self.document.choice(fields["set"], "set", TRACK_SETS)
+        word = self.document.choice(fields["set"], "set", ALL_SETS)
         tracks = self._whole(fields["tracks"], "tracks", 1, MAX_TRACKS)
         seed = self._whole(fields["seed"], "seed", 0, 2**53) if "seed" in fields else 0
         with self._errors_of_sampling():

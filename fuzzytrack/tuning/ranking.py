@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
-from fuzzytrack.simulation.published import TRACK_SETS
+from fuzzytrack.simulation.published import ALL_SETS, TRACK_SETS
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
 from fuzzytrack.trackers.lane_tracker import announce
@@ -51,23 +51,26 @@ class Ranking:
         The trackers.
     variants : tuple of str
         The variants, see `fuzzytrack.tuning.VARIANTS`.
+    sets : tuple of str
+        The sets of tracks, see `fuzzytrack.simulation.published.track_set`.
     seed : int
         Seed of tracks and noise.
-    squares : ndarray, shape (n_trackers, n_variants, 3, n_tracks)
-        Squared errors of each track of the sets ``report``, ``mixed`` and ``strong``, summed over
-        its scored plots, in units of the variance of the noise; infinite where a tracker diverged.
-    plots : ndarray of int, shape (n_variants, 3, n_tracks)
+    squares : ndarray, shape (n_trackers, n_variants, n_sets, n_tracks)
+        Squared errors of each track, summed over its scored plots, in units of the variance of the
+        noise; infinite where a tracker diverged.
+    plots : ndarray of int, shape (n_variants, n_sets, n_tracks)
         Number of scored plots.
     """
 
     names: tuple[str, ...]
     variants: tuple[str, ...]
+    sets: tuple[str, ...]
     seed: int
     squares: Array
     plots: NDArray[np.int64]
 
     def __repr__(self) -> str:
-        return summary(self, "names", "variants", "tracks", "seed")
+        return summary(self, "names", "variants", "sets", "tracks", "seed")
 
     @property
     def tracks(self) -> int:
@@ -90,7 +93,7 @@ class Ranking:
         which = self._variant(variant)
         sums = self.squares[self._tracker(name), which].sum(axis=-1)
         roots = np.sqrt(sums / self.plots[which].sum(axis=-1))
-        return dict(zip(TRACK_SETS, roots.tolist(), strict=True))
+        return dict(zip(self.sets, roots.tolist(), strict=True))
 
     def change(self, name: str, reference: str, variant: str) -> Change:
         """Error of a tracker against that of a reference.
@@ -117,7 +120,7 @@ class Ranking:
             ratio = math.exp(np.log(whole / of_theirs).mean() / 2)
             # Delta method; both saw the same plots, so the spread is that of the differences.
             spread = mine / whole[:, None] - theirs / of_theirs[:, None]
-            error = math.sqrt(self.tracks * spread.var(axis=1).sum()) / (2 * len(TRACK_SETS))
+            error = math.sqrt(self.tracks * spread.var(axis=1).sum()) / (2 * len(self.sets))
         return Change(ratio - 1, ratio * error)
 
     def to_json_dict(self, references: Sequence[str]) -> dict[str, Any]:
@@ -137,6 +140,7 @@ class Ranking:
             "fuzzytrack": __version__,
             "seed": self.seed,
             "tracks": self.tracks,
+            "sets": self.sets,
             "variants": {name: repr(VARIANTS[name]) for name in self.variants},
             "rmse": {
                 name: {variant: self.rmse(name, variant) for variant in self.variants}
@@ -164,6 +168,7 @@ def rank(
     tracks: int,
     seed: int,
     variants: Collection[str] = tuple(VARIANTS),
+    sets: Collection[str] = TRACK_SETS,
     progress: Progress | None = None,
 ) -> Ranking:
     """Measure trackers on fresh random tracks.
@@ -179,6 +184,8 @@ def rank(
         Seed, not negative; another one than that with which the trackers were tuned.
     variants : collection of str
         Names out of `fuzzytrack.tuning.VARIANTS`; all of them unless given.
+    sets : collection of str
+        Sets of tracks, see `fuzzytrack.simulation.published.track_set`.
     progress : callable, optional
         Called with the share of the work that is done.
 
@@ -189,8 +196,8 @@ def rank(
     Raises
     ------
     ValueError
-        If there is no tracker or no such tracker, a variant is unknown, or a number is out of
-        range.
+        If there is no tracker or no such tracker, a variant or set is unknown, or a number is
+        out of range.
 
     Notes
     -----
@@ -210,16 +217,18 @@ def rank(
     if operator.index(seed) < 0:
         raise ValueError(f"seed must not be negative, got {seed}")
     made = as_trackers(trackers)
-    chosen = tuple(variants)
+    chosen, of = tuple(variants), tuple(sets)
     for name in chosen:
         _place(name, tuple(VARIANTS), "variant")
-    squares = np.zeros((len(made), len(chosen), len(TRACK_SETS), tracks))
-    counts = np.zeros((len(chosen), len(TRACK_SETS), tracks), dtype=np.int64)
-    done, every = 0, len(made) * len(chosen) * len(TRACK_SETS)
+    for name in of:
+        _place(name, ALL_SETS, "set")
+    squares = np.zeros((len(made), len(chosen), len(of), tracks))
+    counts = np.zeros((len(chosen), len(of), tracks), dtype=np.int64)
+    done, every = 0, len(made) * len(chosen) * len(of)
     for tracker in made.values():
         announce(tracker, 2, every * tracks)
     for i, variant in enumerate(chosen):
-        for j, name in enumerate(TRACK_SETS):
+        for j, name in enumerate(of):
             plots = scored_plots(name, VARIANTS[variant], tracks, seed)
             counts[i, j] = plots.scored.sum(axis=0)
             for k, tracker in enumerate(made.values()):
@@ -227,7 +236,7 @@ def rank(
                 done += 1
                 if progress is not None:
                     progress(done / every)
-    return Ranking(tuple(made), chosen, seed, squares, counts)
+    return Ranking(tuple(made), chosen, of, seed, squares, counts)
 
 
 def _place(name: str, known: tuple[str, ...], what: str) -> int:

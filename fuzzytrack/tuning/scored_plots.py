@@ -9,7 +9,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.reprs import summary
-from fuzzytrack.simulation.published import TRACK_SETS, track_set
+from fuzzytrack.simulation.published import ALL_SETS, track_set
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.tuning.variants import Variant
 
@@ -46,7 +46,7 @@ def scored_plots(name: str, variant: Variant, tracks: int, seed: int) -> ScoredP
 
     Parameters
     ----------
-    name : {"report", "mixed", "strong"}
+    name : {"report", "mixed", "strong", "weaving"}
         Set of tracks, see `fuzzytrack.simulation.published.track_set`.
     variant : Variant
         When plots come, and how good they are.
@@ -56,7 +56,7 @@ def scored_plots(name: str, variant: Variant, tracks: int, seed: int) -> ScoredP
         Seed, not negative. Tracks and noise of each set have streams of their own. Variants have
         the same tracks.
     """
-    motion, noise = np.random.SeedSequence([seed, TRACK_SETS.index(name)]).spawn(2)
+    motion, noise = np.random.SeedSequence([seed, ALL_SETS.index(name)]).spawn(2)
     found = track_set(name, tracks, int(motion.generate_state(1)[0]), variant.sampling)
     plots = variant.sensors.measure(found.position, noise.spawn(tracks))
     seen = ~np.isnan(plots.z).any(axis=2)

@@ -6,14 +6,15 @@ from numpy.testing import assert_allclose
 
 from fuzzytrack import AlphaBetaTracker, FixedGains
 from fuzzytrack.simulation.published import (
+    ALL_SETS,
     MANEUVERS,
-    TRACK_SETS,
     kim_lee,
     llinas_maneuver,
     s3,
     track_set,
     warship,
 )
+from fuzzytrack.simulation.sampling import Sampling
 
 
 def test_llinas_maneuvers():
@@ -144,7 +145,22 @@ def test_legs_keep_to_their_accelerations(name, low, high):
     assert_allclose(logs.mean(), (math.log(low) + math.log(high)) / 2, atol=0.12)
 
 
-@pytest.mark.parametrize("name", TRACK_SETS)
+def test_weaving_targets_keep_to_their_accelerations_and_periods():
+    tracks = track_set("weaving", 200, 5, Sampling(period=1 / 16))
+    assert tracks.first_scored == 8 * 16
+    second = np.diff(tracks.position, n=2, axis=0) * 16**2
+    size = np.hypot(second[..., 0], second[..., 1])
+    largest = size.max(axis=0)
+    assert 0.1 * 0.99 < largest.min() < 0.15
+    assert 2.5 < largest.max() < 3.0
+    # Always across the same course, with a sign that changes twice in a period.
+    assert_allclose(np.linalg.matrix_rank(second.swapaxes(0, 1), tol=1e-7), 1)
+    side = np.sign((second * second[40]).sum(axis=2))
+    changes = (np.diff(side, axis=0) != 0).sum(axis=0)
+    assert 2 * 59 / 40 - 1 <= changes.min() < changes.max() <= 2 * 59 / 12 + 1
+
+
+@pytest.mark.parametrize("name", ALL_SETS)
 def test_sets_come_from_their_seed_track_by_track(name):
     few, many = track_set(name, 3, 8), track_set(name, 9, 8)
     np.testing.assert_array_equal(few.position, many.position[:, :3])
@@ -155,7 +171,7 @@ def test_sets_come_from_their_seed_track_by_track(name):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("weak", 1, 0), "unknown set 'weak'; one of report, mixed, strong"),
+        (("weak", 1, 0), "unknown set 'weak'; one of report, mixed, strong, weaving"),
         (("mixed", 0, 0), "tracks must be at least 1, got 0"),
         (("mixed", 1, -1), "seed must not be negative, got -1"),
     ],

@@ -134,7 +134,7 @@ def test_targets(text, expected):
     assert scenario.first_scored == 2
 
 
-@pytest.mark.parametrize(("name", "first"), [("report", 2), ("mixed", 8)])
+@pytest.mark.parametrize(("name", "first"), [("report", 2), ("mixed", 8), ("weaving", 8)])
 def test_sets_of_targets(name, first):
     scenario = with_target(f"{{set: {name}, tracks: 5, seed: 3}}")
     np.testing.assert_array_equal(scenario.position, track_set(name, 5, 3).position)

@@ -76,7 +76,7 @@ def test_variants_have_the_same_tracks_and_sets_their_own():
 def ranking(squares, plots=None):
     squares = np.asarray(squares, dtype=float)
     counts = np.full(squares.shape[1:], 2) if plots is None else plots
-    return Ranking(("a", "b", "c")[: len(squares)], ("constant T",), 1, squares, counts)
+    return Ranking(("a", "b", "c")[: len(squares)], ("constant T",), SETS, 1, squares, counts)
 
 
 def test_rmse_and_change_by_hand():
@@ -131,11 +131,22 @@ def test_a_tracker_without_numbers_is_infinitely_wrong():
     assert_array_equal(found, np.inf)
 
 
+def test_other_sets():
+    found = rank([SLOW], 3, 2, ["jitter"], ["weaving"])
+    assert found.sets == ("weaving",)
+    plots = scored_plots("weaving", VARIANTS["jitter"], 3, 2)
+    total = squared_errors(make_tracker(SLOW), plots).sum()
+    assert found.rmse(SLOW, "jitter") == {
+        "weaving": pytest.approx(math.sqrt(total / plots.scored.sum()))
+    }
+
+
 def test_json():
     found = rank([SLOW, FAST], 3, 2, ["jitter", "told x2"])
     plain = found.to_json_dict([FAST])
     assert plain["tracks"] == 3
     assert plain["seed"] == 2
+    assert plain["sets"] == SETS
     assert plain["variants"]["jitter"].startswith('Variant(sampling=Sampling(pattern="jitter"')
     assert plain["rmse"][SLOW]["told x2"] == found.rmse(SLOW, "told x2")
     assert list(plain["changes"]) == [FAST]
@@ -150,6 +161,7 @@ def test_json():
     ("arguments", "complaint"),
     [
         (([SLOW], 2, 1, ["jiter"]), r"unknown variant 'jiter'; did you mean 'jitter'\?"),
+        (([SLOW], 2, 1, ["jitter"], ["weave"]), r"unknown set 'weave'; did you mean 'weaving'\?"),
         (([SLOW], 0, 1), "tracks must be at least 1, got 0"),
         (([SLOW], 2, -1), "seed must not be negative, got -1"),
         ((["fixd"], 2, 1), "no such tracker"),
