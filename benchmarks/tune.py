@@ -8,16 +8,38 @@ import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
+import numpy as np
+
 from fuzzytrack.simulation.published import TRACK_SETS, track_set
-from fuzzytrack.tuning import FAMILIES, tune
+from fuzzytrack.tuning import FAMILIES
+from fuzzytrack.tuning.objective import prediction_mse
+from fuzzytrack.tuning.parameters import Parameter, Space
+from fuzzytrack.tuning.search import Search
+from fuzzytrack.tuning.trial import REFUSED
 
 TRACKS, SEED = 120, 1
+
+
+def loss(family, numbers, sets):
+    """Logarithm of the geometric mean of the RMSE over some sets of tracks."""
+    try:
+        tracker = family.make(numbers)
+    except ValueError:
+        return REFUSED
+    means = [prediction_mse(tracker, tracks, SEED).mean() for tracks in sets]
+    return float(np.log(means).mean() / 2)
 
 
 def tuned(name, target, evaluations):
     names = TRACK_SETS if target == "all" else (target,)
     sets = [track_set(each, TRACKS, SEED) for each in names]
-    return tune(FAMILIES[name], sets, SEED, evaluations)
+    family = FAMILIES[name]
+    limits = zip(family.start, family.low, family.high, strict=True)
+    space = Space(tuple(Parameter(f"number {k}", *each) for k, each in enumerate(limits)))
+    search = Search(space, SEED, evaluations)
+    while not search.finished:
+        search.tell([loss(family, numbers, sets) for numbers in search.ask()])
+    return search.best
 
 
 def main():

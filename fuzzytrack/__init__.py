@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
     from fuzzytrack.schedulers.reachable_gains import certify
     from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
+    from fuzzytrack.tuning.tuner import tune
 
 __all__ = [
     "AlphaBetaTracker",
@@ -61,6 +62,7 @@ __all__ = [
     "plot_surface",
     "plot_track",
     "shipped_rulebases",
+    "tune",
     "w_from_alpha_beta",
 ]
 
@@ -81,6 +83,7 @@ _HOMES = {
     "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),
     "schedulers.reachable_gains": ("certify",),
     "trackers": ("AlphaBetaTracker", "Gains", "TrackResult", "TrackState", "Tracker"),
+    "tuning.tuner": ("tune",),
 }
 _HOME = {name: f"fuzzytrack.{home}" for home, names in _HOMES.items() for name in names}
 

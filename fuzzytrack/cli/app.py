@@ -26,6 +26,10 @@ COMMANDS = {
         "testbed:experiment",
         "Run trackers on many random draws of a scenario.",
     ),
+    "tune": (
+        "tune:tune",
+        "Tune the numbers of a tracker, and judge it on tracks that it was not tuned on.",
+    ),
     "simulate": (
         "simulate:simulate",
         "Write the plots of a simulated target, beside the truth.",

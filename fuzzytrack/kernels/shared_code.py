@@ -40,6 +40,11 @@ class SharedCode:
 
     _kinds: dict[str, _Kind] = field(default_factory=dict, init=False, repr=False)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no function was seen yet."""
+        return not self._kinds
+
     def learn(self, function: Callable[..., Any]) -> None:
         """Note the numbers of a function, so that the code serves all that were noted before it."""
         self._kind(function)

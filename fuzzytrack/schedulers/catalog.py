@@ -15,7 +15,14 @@ from fuzzytrack.schedulers.base import GainScheduler, schedulers
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["READERS", "as_scheduler", "make_scheduler", "scheduling_rulebases", "take_scheduler"]
+__all__ = [
+    "READERS",
+    "as_scheduler",
+    "make_scheduler",
+    "scheduler_of_rules",
+    "scheduling_rulebases",
+    "take_scheduler",
+]
 
 
 def as_scheduler(scheduler: GainScheduler | str) -> GainScheduler:
@@ -81,17 +88,37 @@ def take_scheduler(
     others : mapping, optional
         Parameters that may be among the options too, and stay there.
     """
-    given: dict[str, Any] = {}
     if specs.is_file(name) or name in shipped_rulebases():
-        factory: Callable[..., Any] = FuzzyScheduler
-        given["rules"] = load_rulebase(Path(name) if specs.is_file(name) else name)
-    elif name in schedulers.names():
-        factory = schedulers.get(name)
-    else:
+        rules = load_rulebase(Path(name) if specs.is_file(name) else name)
+        return scheduler_of_rules(rules, options, others)
+    if name not in schedulers.names():
         names = (*scheduling_rulebases(), *schedulers.names())
         raise ValueError(
             f"no such scheduler{suggestion(name, names)}; or a file that ends in .yaml"
         )
+    return _take(schedulers.get(name), {}, options, others)
+
+
+def scheduler_of_rules(
+    rules: RuleBase, options: dict[str, str], others: Mapping[str, inspect.Parameter] | None = None
+) -> GainScheduler:
+    """Make a scheduler of a rule base, of its own options, which are taken from `options`.
+
+    Parameters
+    ----------
+    rules : RuleBase
+    options, others
+        As for `take_scheduler`.
+    """
+    return _take(FuzzyScheduler, {"rules": rules}, options, others)
+
+
+def _take(
+    factory: Callable[..., Any],
+    given: dict[str, Any],
+    options: dict[str, str],
+    others: Mapping[str, inspect.Parameter] | None,
+) -> GainScheduler:
     parameters = {k: p for k, p in specs.parameters_of(factory).items() if k not in given}
     specs.check_options(options, {**parameters, **(others or {})})
     own = {key: options.pop(key) for key in tuple(options) if key in parameters}

@@ -12,10 +12,16 @@ from typing import Any
 from fuzzytrack import specs
 from fuzzytrack.errors import PluginWarning, RuleBaseError
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.plugins import Registry
 from fuzzytrack.schedulers import FuzzyScheduler, GainScheduler, schedulers
-from fuzzytrack.schedulers.catalog import READERS, scheduling_rulebases, take_scheduler
+from fuzzytrack.schedulers.catalog import (
+    READERS,
+    scheduler_of_rules,
+    scheduling_rulebases,
+    take_scheduler,
+)
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -23,7 +29,7 @@ from fuzzytrack.yamltree import suggestion
 
 __all__ = [
     "CatalogEntry", "Trackers", "as_lane_tracker", "as_tracker", "as_trackers", "catalog",
-    "make_tracker",
+    "make_tracker", "tracker_of_rules", "tracker_parameters",
 ]  # fmt: skip
 
 
@@ -218,6 +224,28 @@ def make_tracker(spec: str) -> Tracker:
     return tracker
 
 
+def tracker_of_rules(rules: RuleBase, options: Mapping[str, str]) -> Tracker:
+    """Make a tracker of a rule base, with parameters as a user writes them after its name.
+
+    Parameters
+    ----------
+    rules : RuleBase
+    options : mapping of str to str
+        Parameters of the scheduler and of `fuzzytrack.AlphaBetaTracker`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such parameter, or a value does not fit; lists what is allowed.
+    RuleBaseError
+        If the rule base cannot schedule gains.
+    """
+    start, given = _start_parameters(), dict(options)
+    scheduler = scheduler_of_rules(rules, given, start)
+    made: Tracker = specs.call_with(AlphaBetaTracker, given, READERS, {"scheduler": scheduler})
+    return made
+
+
 def _make(name: str, options: dict[str, str]) -> Any:
     if not name:
         raise ValueError("a name is missing; for example stiffness-damping")
@@ -231,6 +259,23 @@ def _make(name: str, options: dict[str, str]) -> Any:
         raise ValueError(f"no such tracker{suggestion(name, names)}; or a file that ends in .yaml")
     scheduler = take_scheduler(name, options, _start_parameters())
     return specs.call_with(AlphaBetaTracker, options, READERS, {"scheduler": scheduler})
+
+
+def tracker_parameters(name: str) -> dict[str, inspect.Parameter]:
+    """Parameters that a user may write after the name of a scheduler or tracker.
+
+    Raises
+    ------
+    ValueError
+        If there is no such scheduler or tracker; lists those that there are.
+    """
+    kind = _kind(name)
+    if kind == "tracker":
+        return specs.parameters_of(trackers.get(name))
+    if kind == "scheduler":
+        return {**specs.parameters_of(schedulers.get(name)), **_start_parameters()}
+    names = (*schedulers.names(), *trackers.names())
+    raise ValueError(f"no such tracker{suggestion(name, names)}; or a rule base, by name or file")
 
 
 def _start_parameters() -> dict[str, inspect.Parameter]:

@@ -1,12 +1,26 @@
-"""Trackers tuned on sets of tracks, and ranked.
+"""Trackers tuned on data or on sets of tracks, and ranked.
 
-A tracker with parameters can only be judged when they are tuned: `tune` finds them, and `rank`
+`tune` finds the numbers of a tracker, and judges it on data that it was not tuned on. `rank`
 measures trackers on fresh tracks, under the conditions of `VARIANTS`.
 """
 
+from fuzzytrack.tuning.data import TuningData, TuningTrack
 from fuzzytrack.tuning.families import FAMILIES, Family
 from fuzzytrack.tuning.ranking import Change, Ranking, rank
-from fuzzytrack.tuning.search import tune
+from fuzzytrack.tuning.tuned import Tuned
+from fuzzytrack.tuning.tuner import tune
 from fuzzytrack.tuning.variants import VARIANTS, Variant
 
-__all__ = ["FAMILIES", "VARIANTS", "Change", "Family", "Ranking", "Variant", "rank", "tune"]
+__all__ = [
+    "FAMILIES",
+    "VARIANTS",
+    "Change",
+    "Family",
+    "Ranking",
+    "Tuned",
+    "TuningData",
+    "TuningTrack",
+    "Variant",
+    "rank",
+    "tune",
+]

@@ -1,79 +1,98 @@
-"""The search for the parameters of a family of trackers on sets of tracks."""
+"""The search for the parameters with the least loss, by CMA-ES."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from fuzzytrack.arrays import Array
-from fuzzytrack.simulation.published import TrackSet
-from fuzzytrack.tasks import Progress
-from fuzzytrack.tuning.families import Family
-from fuzzytrack.tuning.objective import prediction_mse
+from fuzzytrack.tuning.parameters import Numbers, Space
 
-__all__ = ["tune"]
+__all__ = ["Search"]
 
 
-def tune(
-    family: Family,
-    sets: Sequence[TrackSet],
-    seed: int,
-    evaluations: int = 200,
-    progress: Progress | None = None,
-) -> tuple[float, ...]:
-    """Parameters with the least geometric mean of the RMSE over some sets of tracks.
+class Search:
+    """A search by CMA-ES that asks for the losses of some numbers, a generation at a time.
 
     Parameters
     ----------
-    family : Family
-        With at least one parameter to tune.
-    sets : sequence of TrackSet
+    space : Space
+        At least one parameter.
     seed : int
-        Seed of the noise.
-    evaluations : int
-        Number of trackers to try.
-    progress : callable, optional
-        Called with the share of the work that is done.
+        The same seed and losses give the same numbers.
+    trials : int
+        Number of trials after which it ends.
 
-    Returns
-    -------
-    tuple of float
+    Attributes
+    ----------
+    losses : list of float
+        What it was told so far, in order. A search that is told the same again continues where
+        this one is.
+    best : tuple of float
+        Numbers with the least loss so far.
+    best_loss : float
+
+    Raises
+    ------
+    ValueError
+        If the package `cmaes` is not installed.
 
     Notes
     -----
-    Nelder and Mead's simplex over the logarithms of the parameters; it finds a local optimum.
+    Hansen (2016), The CMA evolution strategy: a tutorial. It begins with the start of the space
+    itself, so that what it finds is not worse.
     """
-    from scipy.optimize import minimize
 
-    low, high = np.log(family.low), np.log(family.high)
-    tried = 0
-
-    def numbers(place: Array) -> tuple[float, ...]:
-        inside = np.clip(place, 0.0, 1.0)
-        return tuple(float(x) for x in np.exp(low + inside * (high - low)))
-
-    def loss(place: Array) -> float:
-        nonlocal tried
-        tried += 1
-        if progress is not None:
-            progress(min(1.0, tried / evaluations))
+    def __init__(self, space: Space, seed: int, trials: int) -> None:
         try:
-            tracker = family.make(numbers(place))
-        except ValueError:
-            return math.inf
-        means = [prediction_mse(tracker, tracks, seed).mean() for tracks in sets]
-        # A place outside the limits is scored as the edge, plus a penalty that grows with distance.
-        outside = np.abs(place - np.clip(place, 0.0, 1.0)).sum()
-        return float(np.log(means).mean() / 2 + outside)
+            from cmaes import CMA
+        except ImportError:
+            raise ValueError(
+                "tuning needs the package cmaes, which is not installed; "
+                "pip install 'fuzzytrack[tune]'"
+            ) from None
+        self.space, self.trials = space, trials
+        self.losses: list[float] = []
+        self.best, self.best_loss = space.start, math.inf
+        self._optimizer: Any = CMA(
+            mean=np.zeros(len(space.parameters)), sigma=1.0, bounds=space.bounds, seed=seed
+        )
+        self._asked: list[Any] = [np.zeros(len(space.parameters)), *self._generation()]
 
-    start = (np.log(family.start) - low) / (high - low)
-    simplex = np.vstack([start, *(start + 0.15 * row for row in np.eye(len(start)))])
-    found = minimize(
-        loss,
-        start,
-        method="Nelder-Mead",
-        options={"maxfev": evaluations, "initial_simplex": simplex, "xatol": 1e-3, "fatol": 1e-5},
-    )
-    return numbers(found.x)
+    def __repr__(self) -> str:
+        return f"<Search: {len(self.losses)} of {self.trials} trials>"
+
+    @property
+    def finished(self) -> bool:
+        """Whether the trials are used up, or they no longer differ."""
+        return len(self.losses) >= self.trials or (
+            bool(self.losses) and bool(self._optimizer.should_stop())
+        )
+
+    def ask(self) -> list[Numbers]:
+        """Numbers to be tried next."""
+        return [self.space.numbers(place) for place in self._asked]
+
+    def tell(self, losses: Sequence[float]) -> None:
+        """Take the losses of the numbers that were asked for, in the same order."""
+        for numbers, loss in zip(self.ask(), losses, strict=True):
+            if loss < self.best_loss:
+                self.best, self.best_loss = numbers, loss
+        # The start, which is tried first, is no member of a generation.
+        count = self._optimizer.population_size
+        self._optimizer.tell(list(zip(self._asked, losses, strict=True))[-count:])
+        self.losses += losses
+        self._asked = self._generation()
+
+    def _generation(self) -> list[Any]:
+        return [self._optimizer.ask() for _ in range(self._optimizer.population_size)]
+
+    def replay(self, losses: Sequence[float]) -> None:
+        """Take the losses of an earlier search, as far as its generations are whole."""
+        told = 0
+        while len(losses) - told >= len(self._asked) and not self.finished:
+            count = len(self._asked)
+            self.tell(losses[told : told + count])
+            told += count

@@ -1,44 +1,64 @@
 import math
+import sys
 
 import numpy as np
 import pytest
 
-from fuzzytrack.simulation.published import track_set
-from fuzzytrack.tuning import FAMILIES, tune
-from fuzzytrack.tuning.objective import prediction_mse
+from fuzzytrack.tuning.parameters import Parameter, Space
+from fuzzytrack.tuning.search import Search
 
-
-def test_the_error_is_that_of_a_loop_over_scans():
-    tracks = track_set("mixed", 2, 3)
-    tracker = FAMILIES["fixed α-β, published"].make(())
-    found = prediction_mse(tracker, tracks, 9)
-    plots = tracks.position + np.random.default_rng([9, 1]).standard_normal(tracks.position.shape)
-    for track in range(2):
-        predicted = tracker.run(tracks.time, plots[:, track]).predicted
-        squares = [
-            math.dist(predicted[k], tracks.position[k, track]) ** 2
-            for k in range(tracks.first_scored, len(tracks.time))
-        ]
-        assert found[track] == pytest.approx(np.mean(squares), rel=1e-12)
-
-
-def test_tuning_finds_what_a_grid_finds():
-    sets = [track_set("mixed", 4, 3), track_set("strong", 4, 3)]
-    family, shares = FAMILIES["fading memory"], []
-    (best,) = tune(family, sets, seed=2, evaluations=25, progress=shares.append)
-
-    def loss(xi):
-        tracker = family.make((xi,))
-        return np.mean([np.log(prediction_mse(tracker, s, 2).mean()) / 2 for s in sets])
-
-    grid = np.linspace(0.1, 0.9, 33)
-    assert loss(best) <= min(map(loss, grid)) + 1e-4
-    assert shares == sorted(shares)
-    assert 0 < shares[-1] <= 1
-
-
-def test_a_family_without_tracker_at_some_numbers_is_tuned_all_the_same():
-    numbers = tune(
-        FAMILIES["omega-schedule, tuned"], [track_set("report", 2, 3)], 2, evaluations=12
+SPACE = Space(
+    (
+        Parameter("size", 1.0, 1e-3, 1e3),
+        Parameter("share", 0.5, 0.0, 1.0, "probability"),
+        Parameter("place", 0.0, -4.0, 6.0, "linear"),
     )
-    assert list(numbers[2:]) == sorted(numbers[2:])
+)
+BEST = (20.0, 0.9, 3.0)
+
+
+def loss(numbers):
+    size, share, place = numbers
+    # A valley that is not along the axes.
+    bent = math.log(size / 20) + 0.5 * (place - 3)
+    return bent**2 + 4 * (share - 0.9) ** 2 + 0.3 * (place - 3) ** 2
+
+
+def run(search, least=math.inf):
+    while not search.finished and len(search.losses) < least:
+        search.tell([loss(numbers) for numbers in search.ask()])
+    return search
+
+
+def test_the_optimum_is_found():
+    search = run(Search(SPACE, seed=3, trials=600))
+    np.testing.assert_allclose(search.best, BEST, rtol=0.02)
+    assert search.best_loss == loss(search.best) < 1e-3
+    assert len(search.losses) <= 600 + 20
+
+
+def test_it_begins_at_the_start_and_is_never_worse():
+    search = Search(SPACE, seed=0, trials=8)
+    assert search.ask()[0] == SPACE.start == (1.0, 0.5, 0.0)
+    search.tell([0.0, *(1.0 for _ in search.ask()[1:])])
+    assert search.best == SPACE.start
+    assert search.finished
+
+
+def test_what_is_told_again_continues_where_it_was():
+    whole = run(Search(SPACE, seed=5, trials=60))
+    begun = run(Search(SPACE, seed=5, trials=60), least=30)
+    continued = Search(SPACE, seed=5, trials=60)
+    # The last generation was interrupted: it is tried again.
+    continued.replay([*begun.losses, *whole.losses[len(begun.losses) :][:2]])
+    assert continued.losses == begun.losses
+    assert continued.ask() == begun.ask()
+    assert run(continued).losses == whole.losses
+    assert continued.best == whole.best
+    assert run(Search(SPACE, seed=6, trials=60)).losses != whole.losses
+
+
+def test_a_missing_package_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "cmaes", None)
+    with pytest.raises(ValueError, match=r"package cmaes, .* pip install 'fuzzytrack\[tune\]'"):
+        Search(SPACE, seed=0, trials=5)

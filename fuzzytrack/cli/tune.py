@@ -1,0 +1,161 @@
+"""The command that tunes the numbers of a tracker on data."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.output import print_json, print_table, progress, say, show
+from fuzzytrack.cli.recording import axes_named
+from fuzzytrack.fuzzy.loading import shipped_rulebases
+from fuzzytrack.io.files import check_output
+from fuzzytrack.plurals import counted
+from fuzzytrack.specs import is_file, split
+from fuzzytrack.tuning.tuned import Tuned
+from fuzzytrack.tuning.tuner import tune as tune_tracker
+from fuzzytrack.workers import workers
+
+__all__ = ["tune"]
+
+
+def tune(
+    data: Annotated[
+        str,
+        typer.Argument(
+            metavar="DATA|SCENARIO",
+            help="File of plots; or a shipped scenario, or FILE.yaml, to be simulated.",
+        ),
+    ],
+    tracker: Annotated[
+        str,
+        typer.Option(
+            "--tracker",
+            metavar="FAMILY",
+            help="Rule base or FILE.yaml; or fixed, kalata, kalman-cv, kalman-ca, imm or any "
+            "other tracker, with numbers to begin at: kalman-cv:sigma_v=2.",
+        ),
+    ],
+    free: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A,B,C",
+            help="Numbers to tune. Of a rule base: outputs, sets, normalization, a variable, "
+            "VARIABLE.SET or a setting. [default: all; of other trackers those of the family]",
+        ),
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option("--output", "-o", metavar="OUT.yaml", help="Write the tuned rule base."),
+    ] = None,
+    time: options.Time = None,
+    id: options.Id = None,
+    axes: options.Axes = None,
+    sigma: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="Standard deviation of the plots, if the tracker needs it."),
+    ] = None,
+    sort: options.Sort = False,
+    truth: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="True positions. [default: compare predictions with plots]"
+        ),
+    ] = None,
+    runs: Annotated[int, typer.Option(min=1, help="Runs of a scenario.")] = 60,
+    seed: options.Seed = 0,
+    trials: Annotated[
+        int | None,
+        typer.Option(min=1, help="Trackers a search tries. [default: 60, and 40 a number]"),
+    ] = None,
+    folds: Annotated[int, typer.Option(min=2, help="Folds, each held out once.")] = 5,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes of this computer.")] = 1,
+    state: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Keep the search there, so that it can be resumed."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue the search that --state holds.")
+    ] = False,
+    plugin: options.Plugins = None,
+    json: options.Json = False,
+) -> None:
+    """Tune the numbers of a tracker, and judge it on tracks that it was not tuned on.
+
+    The same seed gives the same numbers on any number of processes. Without --truth the objective
+    is the RMS of the innovations of recorded plots.
+    """
+    options.load_plugins(plugin)
+    if output is not None:
+        _check_output(output, tracker, data)
+    try:
+        with workers(jobs, None) as executor, progress("tuning") as watch:
+            found = tune_tracker(
+                data,
+                tracker,
+                free=None if free is None else options.names(free, "--free"),
+                sigma=sigma,
+                truth=truth,
+                time=time,
+                id=id,
+                axes=axes_named(axes),
+                sort=sort,
+                runs=runs,
+                seed=seed,
+                trials=trials,
+                folds=folds,
+                executor=executor,
+                state=state,
+                resume=resume,
+                progress=watch,
+            )
+    except KeyboardInterrupt:
+        if state is None:
+            raise
+        typer.echo(f"interrupted; the search is in {state}; continue with --resume", err=True)
+        raise typer.Exit(130) from None
+    if output is not None:
+        found.save(output)
+    if json:
+        print_json({**found.to_json_dict(), "output": output})
+        return
+    _print(found)
+    if output is not None:
+        say(f"wrote {output}")
+
+
+def _check_output(output: str, tracker: str, data: str) -> None:
+    """Find out what cannot be written before the work is done."""
+    name, _ = split(tracker, "tracker")
+    if not (is_file(name) or name in shipped_rulebases()):
+        raise ValueError(
+            f"--output: a tuned {name} has no file; without it, its specification is printed"
+        )
+    check_output(output, (data,))
+
+
+def _print(found: Tuned) -> None:
+    say(
+        f"{found.data}: {counted(found.plots, 'plot')}, {found.folds} folds by {found.units}, "
+        f"{counted(found.trials, 'trial')}, seed {found.seed}"
+    )
+    if found.units != "tracks":
+        say("fewer than 3 tracks: blocks of time are held out instead of tracks")
+    rows = [[row.name, show(row.training), show(row.held_out), str(row)] for row in found.rows]
+    print_table(
+        ["RMS (m)", "training", "held out", "tuned against it (95 %)"],
+        rows,
+        title=f"RMS of {found.objective}",
+    )
+    say()
+    numbers = [
+        [name, f"{found.start[name]:.5g}", f"{value:.5g}"] for name, value in found.numbers.items()
+    ]
+    print_table(["free number", "start", "tuned"], numbers)
+    for name in found.unused:
+        say(f"{name}: without an effect on these data, left as it was")
+    say()
+    say(found.verdict)
+    if not found.is_rulebase:
+        say(f"tracker: {found.text}")

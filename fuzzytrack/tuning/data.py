@@ -1,0 +1,273 @@
+"""Tracks on which trackers are tuned: plots, maybe with the truth."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.recording import Recording, Track, read_tracks
+from fuzzytrack.recordings.ragged import batches
+from fuzzytrack.reprs import summary
+from fuzzytrack.simulation.noise import streams, truth_of_runs
+from fuzzytrack.simulation.scenario import Scenario
+
+__all__ = ["LEAST_PLOTS", "Batch", "TuningData", "TuningTrack", "recorded", "simulated"]
+
+#: Plots that are scored, in all tracks together, below which nothing is tuned.
+LEAST_PLOTS = 200
+# Plots of a track that are not scored: a track starts with two, and predictions begin then.
+_START = 2
+
+
+@dataclass(frozen=True, eq=False)
+class TuningTrack:
+    """One track.
+
+    Attributes
+    ----------
+    id : str
+    time : ndarray, shape (n_steps,)
+        Times (s), increasing.
+    plots : ndarray, shape (n_steps, n_axes)
+        Plots (m); NaN where missed.
+    truth : ndarray or None, shape (n_steps, n_axes)
+        True positions (m); NaN where unknown.
+    sigma : ndarray or None, shape (n_steps, n_axes)
+        Standard deviation of each plot (m).
+    """
+
+    id: str
+    time: Array
+    plots: Array
+    truth: Array | None = None
+    sigma: Array | None = None
+
+    def __repr__(self) -> str:
+        return summary(self, "id", "plots")
+
+    @property
+    def scored(self) -> NDArray[np.bool_]:
+        """Whether the prediction of each plot is scored, shape (n_steps,)."""
+        seen = ~np.isnan(self.plots).any(axis=1)
+        known = seen if self.truth is None else seen & ~np.isnan(self.truth).any(axis=1)
+        return known & (np.cumsum(seen) > _START)
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Tracks side by side, as a tracker runs them; padded with missed plots.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n_steps, n_tracks)
+    plots, target : ndarray, shape (n_steps, n_tracks, n_axes)
+        `target` is what a prediction is compared with: the truth, or the plot.
+    sigma : ndarray or None, shape (n_steps, n_tracks, n_axes)
+    members : ndarray of int, shape (n_tracks,)
+        Which tracks.
+    scored : ndarray of bool, shape (n_steps, n_tracks)
+    """
+
+    time: Array
+    plots: Array
+    target: Array
+    sigma: Array | None
+    members: NDArray[np.int64]
+    scored: NDArray[np.bool_]
+
+    def __repr__(self) -> str:
+        return summary(self, "plots")
+
+
+@dataclass(frozen=True, eq=False)
+class TuningData:
+    """Tracks on which trackers are tuned.
+
+    Parameters
+    ----------
+    name : str
+        Of the file or scenario.
+    tracks : tuple of TuningTrack
+        At least one; either all with truth or none.
+
+    Raises
+    ------
+    ValueError
+        If there are too few plots, or they are all at one place.
+    """
+
+    name: str
+    tracks: tuple[TuningTrack, ...]
+
+    def __post_init__(self) -> None:
+        count = sum(int(track.scored.sum()) for track in self.tracks)
+        if count < LEAST_PLOTS:
+            raise DataError(
+                f"{self.name}: {count} plots can be scored; tuning needs {LEAST_PLOTS} at least"
+            )
+        plots = np.concatenate([track.plots for track in self.tracks])
+        if (np.nanmax(plots, axis=0) == np.nanmin(plots, axis=0)).all():
+            raise DataError(f"{self.name}: all plots are at one place; there is nothing to tune")
+
+    def __repr__(self) -> str:
+        return summary(self, "name", tracks=len(self.tracks))
+
+    @property
+    def has_truth(self) -> bool:
+        """Whether predictions are compared with the truth; otherwise with the plots."""
+        return self.tracks[0].truth is not None
+
+    @property
+    def has_sigma(self) -> bool:
+        """Whether the standard deviations of the plots are known."""
+        return self.tracks[0].sigma is not None
+
+    @property
+    def n_axes(self) -> int:
+        """Axes of the plots."""
+        return int(self.tracks[0].plots.shape[1])
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates of all plots, missed ones included."""
+        return sum(track.plots.size for track in self.tracks)
+
+    @cached_property
+    def noise(self) -> float:
+        """Typical standard deviation of a plot (m): the known one, or an estimate.
+
+        The estimate is the median size of the differences of second order between plots.
+        """
+        if self.has_sigma:
+            known = np.concatenate([np.ravel(t.sigma) for t in self.tracks if t.sigma is not None])
+            return float(np.sqrt(np.nanmean(known**2)))
+        sizes = np.concatenate([np.abs(np.diff(t.plots, n=2, axis=0)).ravel() for t in self.tracks])
+        # Of normal noise the median of |d| is 0.6745 standard deviations, and d has six times
+        # the variance.
+        typical = float(np.nanmedian(sizes)) / (0.6745 * math.sqrt(6))
+        return typical if typical > 0 else float(np.nanmax(sizes)) / 10
+
+    @cached_property
+    def interval(self) -> float:
+        """Typical time between plots (s)."""
+        gaps = [np.diff(t.time[~np.isnan(t.plots).any(axis=1)]) for t in self.tracks]
+        return float(np.median(np.concatenate(gaps)))
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """The tracks as they are run."""
+        pads = [(t.plots, t.plots if t.truth is None else t.truth, t.sigma) for t in self.tracks]
+        gap = np.full((1, self.n_axes), np.nan)
+        plots, target = (np.concatenate([*(p[k] for p in pads), gap]) for k in (0, 1))
+        scored = np.concatenate([*(t.scored for t in self.tracks), [False]])
+        sigma = None
+        if self.has_sigma:
+            sigma = np.concatenate([*(p[2] for p in pads if p[2] is not None), gap])
+            # Where there is no plot, there need not be one.
+            sigma = np.where(np.isnan(sigma), 1.0, sigma)
+        return tuple(
+            Batch(
+                batch.times,
+                plots[batch.places],
+                target[batch.places],
+                None if sigma is None else sigma[batch.places],
+                batch.members,
+                scored[batch.places],
+            )
+            for batch in batches([t.time for t in self.tracks])
+        )
+
+
+def simulated(scenario: Scenario, runs: int, seed: int) -> TuningData:
+    """Runs of a scenario, each with its truth.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    runs : int
+        Number of runs, at least 1.
+    seed : int
+        Seed of the noise, not negative.
+    """
+    position, _ = scenario.truth(0, runs)
+    plots = scenario.sensors.measure(position, streams(seed, runs))
+    truth = np.broadcast_to(truth_of_runs(position, runs), plots.z.shape)
+    tracks = tuple(
+        TuningTrack(str(k + 1), scenario.time, plots.z[:, k], truth[:, k], plots.sigma[:, k])
+        for k in range(runs)
+    )
+    return TuningData(scenario.name, tracks)
+
+
+def recorded(
+    path: str | os.PathLike[str],
+    *,
+    sigma: float | None = None,
+    truth: str | os.PathLike[str] | None = None,
+    time: str | None = None,
+    id: str | None = None,
+    axes: Sequence[str] | None = None,
+    sort: bool = False,
+) -> TuningData:
+    """Recorded plots.
+
+    Parameters
+    ----------
+    path : str or path
+        File of plots, see `fuzzytrack.io.read_tracks`.
+    sigma : float, optional
+        Standard deviation of all plots (m).
+    truth : str or path, optional
+        File of true positions with the same columns and identities; between its times they are
+        interpolated linearly, and outside of them plots are not scored.
+    time, id, axes, sort
+        As for `fuzzytrack.io.read_tracks`.
+
+    Raises
+    ------
+    DataError
+        If a file does not hold such tracks, or the truth lacks a track; see also `TuningData`.
+    OSError
+        If a file cannot be read.
+    """
+    if sigma is not None and not 0 < sigma < math.inf:
+        raise ValueError(f"sigma must be > 0, got {sigma:g}")
+    recording = read_tracks(path, time=time, id=id, axes=axes, sort=sort)
+    true: Recording | None = None
+    if truth is not None:
+        true = read_tracks(truth, time=time, id=id, axes=axes, sort=sort)
+    tracks = tuple(
+        TuningTrack(
+            track.id,
+            track.time,
+            track.plots,
+            None if true is None else _truth(track, true),
+            None if sigma is None else np.full(track.plots.shape, float(sigma)),
+        )
+        for track in recording.tracks
+    )
+    return TuningData(os.fspath(path), tracks)
+
+
+def _truth(track: Track, true: Recording) -> Array:
+    """True positions at the times of a track."""
+    for other in true.tracks:
+        if other.id == track.id:
+            break
+    else:
+        raise DataError(f"{true.file}: has no track {track.id!r}, for which there are plots")
+    if other.plots.shape[1] != track.plots.shape[1]:
+        raise DataError(
+            f"{true.file}: has {other.plots.shape[1]} axes, the plots have {track.plots.shape[1]}"
+        )
+    return np.stack(
+        [np.interp(track.time, other.time, x, np.nan, np.nan) for x in other.plots.T], axis=1
+    )

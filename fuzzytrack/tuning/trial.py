@@ -1,0 +1,113 @@
+"""Trials: trackers run on all tracks, and their errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.kernels.shared_code import SharedCode
+from fuzzytrack.reprs import summary
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, learn_code, sharing_code
+from fuzzytrack.tuning.candidates import Candidates
+from fuzzytrack.tuning.data import TuningData
+from fuzzytrack.tuning.folds import Folds
+from fuzzytrack.tuning.parameters import Numbers
+
+__all__ = ["REFUSED", "Trials"]
+
+#: Loss of numbers that make no tracker, or one that does not predict all plots.
+REFUSED = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """Runs trackers on data; can be sent to another process.
+
+    Parameters
+    ----------
+    data : TuningData
+    folds : Folds
+    compiled : bool
+        Whether to run compiled, all trackers of a kind through the same code.
+    """
+
+    data: TuningData
+    folds: Folds
+    compiled: bool
+
+    def __repr__(self) -> str:
+        return summary(self, "data", "compiled")
+
+    def errors(self, candidates: Candidates, trials: Sequence[Numbers]) -> list[Array]:
+        """Sums of squared errors (m²) of the trackers with some numbers.
+
+        Parameters
+        ----------
+        candidates : Candidates
+        trials : sequence of Numbers
+
+        Returns
+        -------
+        list of ndarray, shape (n_units,)
+            One for each trial; infinite if its numbers make no tracker, or one that does not
+            predict all scored plots.
+        """
+        made = [_tracker(candidates, numbers) for numbers in trials]
+        if not self.compiled:
+            return [self._errors(tracker) for tracker in made]
+        code, n_axes, found = _shared_code(candidates.title), self.data.n_axes, []
+        if code.is_empty:
+            # One code for all that differs between these; a later surprise is compiled anew.
+            for tracker in made:
+                learn_code(tracker, n_axes, code)
+        for tracker in made:
+            with sharing_code(tracker, n_axes, code):
+                found.append(self._errors(tracker))
+        return found
+
+    def losses(self, candidates: Candidates, trials: Sequence[Numbers], held: int) -> list[float]:
+        """Logarithms of the RMS errors on all units but those of a fold; all of them for -1."""
+        trained = self.folds.fold != held
+        plots = self.folds.plots[trained].sum()
+        found = []
+        for sums in self.errors(candidates, trials):
+            mean = sums[trained].sum() / plots
+            found.append(0.5 * math.log(mean) if 0 < mean < math.inf else REFUSED)
+        return found
+
+    def _errors(self, tracker: Tracker | None) -> Array:
+        if tracker is None:
+            return np.full(len(self.folds.fold), math.inf)
+        squares = []
+        for batch in self.data.batches:
+            if isinstance(tracker, LaneTracker):
+                # In one thread, since the code is shared; other processors run other trials.
+                result = tracker.run(
+                    batch.time, batch.plots, batch.sigma, keep=("predicted",), threads=1
+                )
+            else:
+                result = tracker.run(batch.time, batch.plots, batch.sigma)
+            with np.errstate(over="ignore", invalid="ignore"):
+                error = ((result.predicted - batch.target) ** 2).sum(axis=-1)
+            squares.append(np.where(np.isfinite(error), error, math.inf))
+        return self.folds.by_unit(squares)
+
+
+def _tracker(candidates: Candidates, numbers: Numbers) -> Tracker | None:
+    try:
+        return candidates.tracker(numbers)
+    except (ValueError, RuleBaseError):
+        return None
+
+
+@cache
+def _shared_code(title: str) -> SharedCode:
+    """Compiled code of this process, for all trackers of a family that are tried."""
+    return SharedCode()

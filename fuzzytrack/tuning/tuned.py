@@ -1,0 +1,232 @@
+"""A tuned tracker, with its errors on data that it was not tuned on."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.io.files import whole_file
+from fuzzytrack.reprs import summary
+from fuzzytrack.trackers.base import Tracker
+
+__all__ = ["Row", "Tuned", "change", "with_head"]
+
+
+@dataclass(frozen=True)
+class Row:
+    """Errors of one tracker.
+
+    Attributes
+    ----------
+    name : str
+    training : float
+        RMS error (m) on the data that it was tuned on, over all folds.
+    held_out : float
+        RMS error (m) on the data that it was not tuned on.
+    change : tuple of float, or None
+        Relative change of the held-out error from this tracker to the tuned one, and the ends of
+        its 95 % interval; None for the tuned one itself.
+    numbers : dict of str to float
+        Its free numbers, tuned on all data.
+    """
+
+    name: str
+    training: float
+    held_out: float
+    change: tuple[float, float, float] | None
+    numbers: dict[str, float]
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether the tuned tracker is better, with an interval that excludes 0."""
+        return self.change is not None and self.change[2] < 0
+
+    def __str__(self) -> str:
+        if self.change is None:
+            return ""
+        middle, low, high = (100 * x for x in self.change)
+        return f"{middle:+.1f} % ({low:+.1f} to {high:+.1f})"
+
+
+@dataclass(frozen=True, eq=False)
+class Tuned:
+    """Result of `fuzzytrack.tune`.
+
+    Attributes
+    ----------
+    tracker : Tracker
+        The tuned tracker.
+    text : str
+        What makes it again: a specification, or a rule base in YAML.
+    is_rulebase : bool
+        Which of them.
+    numbers, start : dict of str to float
+        Its free numbers, and those where the search began.
+    unused : tuple of str
+        Free numbers without an effect on these data; they are left as they were.
+    rows : tuple of Row
+        The start, the rivals, and the tuned tracker last.
+    data, objective : str
+        What it was tuned on, and what was minimized.
+    folds : int
+        Number of folds.
+    units : str
+        What was held out: tracks, or blocks of time.
+    plots : int
+        Number of plots that were scored.
+    trials : int
+        Trackers that were tried, in all searches.
+    seed : int
+    """
+
+    tracker: Tracker
+    text: str
+    is_rulebase: bool
+    numbers: dict[str, float]
+    start: dict[str, float]
+    unused: tuple[str, ...]
+    rows: tuple[Row, ...]
+    data: str
+    objective: str
+    folds: int
+    units: str
+    plots: int
+    trials: int
+    seed: int
+
+    def __repr__(self) -> str:
+        return summary(self, "data", "numbers", "verdict")
+
+    @property
+    def worth_it(self) -> bool:
+        """Whether it is better than the start on data that it was not tuned on, significantly."""
+        return self.rows[0].is_worse
+
+    @property
+    def verdict(self) -> str:
+        """In words: whether tuning is worth it, and what is as good."""
+        if not self.worth_it:
+            return f"not worth it: held-out change against the start {self.rows[0]}"
+        found = f"worth it: held-out change against the start {self.rows[0]}"
+        as_good = [row.name for row in self.rows[1:-1] if not row.is_worse]
+        return f"{found}; but not better than {' or '.join(as_good)}" if as_good else found
+
+    @property
+    def report(self) -> str:
+        """Table of errors, and the verdict."""
+        heads = ("", "training", "held out", "tuned against it (95 %)")
+        table = [heads]
+        for row in self.rows:
+            table.append((row.name, f"{row.training:.5g}", f"{row.held_out:.5g}", str(row)))
+        widths = [max(len(line[k]) for line in table) for k in range(len(heads))]
+        lines = [
+            "  ".join(
+                cell.ljust(width) if k == 0 else cell.rjust(width)
+                for k, (cell, width) in enumerate(zip(line, widths, strict=True))
+            ).rstrip()
+            for line in table
+        ]
+        return "\n".join([f"RMS of {self.objective}", *lines, self.verdict])
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the tuned rule base to a file, whole or not at all.
+
+        Raises
+        ------
+        ValueError
+            If it is no rule base; the message has the specification.
+        OSError
+            If the file cannot be written.
+        """
+        if not self.is_rulebase:
+            raise ValueError(f"output: a tuned tracker of this kind has no file; type {self.text}")
+        with whole_file(path) as draft:
+            draft.write_text(self.text, encoding="utf-8", newline="")
+
+    def to_json_dict(self) -> dict[str, Any]:
+        """All but the tracker as values for JSON."""
+        return {
+            "data": self.data,
+            "objective": self.objective,
+            "units": self.units,
+            "folds": self.folds,
+            "plots": self.plots,
+            "trials": self.trials,
+            "seed": self.seed,
+            "numbers": self.numbers,
+            "start": self.start,
+            "without_effect": list(self.unused),
+            "specification": None if self.is_rulebase else self.text,
+            "errors": [
+                {
+                    "name": row.name,
+                    "training": row.training,
+                    "held_out": row.held_out,
+                    "numbers": row.numbers,
+                    **dict(
+                        zip(
+                            ("change", "change_low", "change_high"),
+                            row.change or (None, None, None),
+                            strict=True,
+                        )
+                    ),
+                }
+                for row in self.rows
+            ],
+            "worth_it": self.worth_it,
+            "verdict": self.verdict,
+        }
+
+
+def change(tuned: Array, other: Array) -> tuple[float, float, float]:
+    """Relative change of an RMS error, with a 95 % interval.
+
+    Parameters
+    ----------
+    tuned, other : ndarray, shape (n_units,)
+        Sums of squared errors of both in each unit.
+
+    Returns
+    -------
+    change, low, high : float
+        Infinite or NaN where an error is not finite.
+
+    Notes
+    -----
+    Jackknife over units of the logarithm of the ratio, with Student's t. Both saw the same plots,
+    so the interval is that of paired differences.
+    """
+    from scipy.stats import t
+
+    count = len(tuned)
+    if not (np.isfinite(tuned).all() and np.isfinite(other).all()):
+        whole = -1.0 if np.isfinite(tuned).all() else math.inf
+        return whole, whole, whole
+    # Without each of the units in turn.
+    ratios = 0.5 * np.log((tuned.sum() - tuned) / (other.sum() - other))
+    ratio = 0.5 * math.log(tuned.sum() / other.sum())
+    spread = math.sqrt((count - 1) / count * float(((ratios - ratios.mean()) ** 2).sum()))
+    reach = float(t.ppf(0.975, count - 1)) * spread
+    middle, low, high = (math.expm1(ratio + part) for part in (0.0, -reach, reach))
+    return middle, low, high
+
+
+def with_head(text: str, lines: Sequence[str]) -> str:
+    """Text of a rule base with comments at its head, after the one that names its schema."""
+    end = "\r\n" if "\r\n" in text else "\n"
+    first, newline, rest = text.partition(end)
+    comments = "".join(f"# {_printable(line)}{end}" for line in lines)
+    mark = "\ufeff" if text.startswith("\ufeff") else ""
+    if newline and first.removeprefix(mark).startswith("# yaml-language-server"):
+        return first + newline + comments + rest
+    return mark + comments + text.removeprefix(mark)
+
+
+def _printable(text: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in text)

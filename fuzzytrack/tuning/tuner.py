@@ -1,0 +1,432 @@
+"""Tuning a tracker on data: searches on every fold, of the family and of its rivals."""
+
+from __future__ import annotations
+
+import datetime
+import hashlib
+import json
+import os
+from collections.abc import Collection, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack import specs
+from fuzzytrack.fuzzy.loading import rulebase_path, shipped_rulebases
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.io.files import whole_file
+from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
+from fuzzytrack.tasks import Progress, run_tasks
+from fuzzytrack.tuning.candidates import Candidates
+from fuzzytrack.tuning.data import TuningData, recorded, simulated
+from fuzzytrack.tuning.folds import make_folds
+from fuzzytrack.tuning.parameters import Numbers
+from fuzzytrack.tuning.rulebase_numbers import RuleBaseNumbers, rulebase_numbers
+from fuzzytrack.tuning.search import Search
+from fuzzytrack.tuning.specifications import specification
+from fuzzytrack.tuning.trial import Trials
+from fuzzytrack.tuning.tuned import Row, Tuned, change, with_head
+from fuzzytrack.version import __version__
+
+__all__ = ["tune"]
+
+# Trials of a search: so many, and so many more for each free number.
+_TRIALS, _TRIALS_EACH = 60, 40
+# Coordinates of all trials above which compiling saves time.
+_COMPILE_ABOVE = 3_000_000
+# All data are trained on.
+_ALL = -1
+
+
+def tune(
+    data: TuningData | Scenario | str | os.PathLike[str],
+    tracker: str | RuleBase,
+    *,
+    free: Collection[str] | None = None,
+    sigma: float | None = None,
+    truth: str | os.PathLike[str] | None = None,
+    time: str | None = None,
+    id: str | None = None,
+    axes: Sequence[str] | None = None,
+    sort: bool = False,
+    runs: int = 60,
+    seed: int = 0,
+    trials: int | None = None,
+    folds: int = 5,
+    executor: Executor | None = None,
+    state: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> Tuned:
+    """Tune the numbers of a tracker on data, and judge it on data that it was not tuned on.
+
+    Parameters
+    ----------
+    data : TuningData, Scenario, str or path
+        The name of a shipped scenario or a YAML file, whose runs are simulated with their truth; or
+        a file of recorded plots, see `fuzzytrack.io.read_tracks`.
+    tracker : str or RuleBase
+        A rule base, by its name or file, or a scheduler or tracker, as
+        `fuzzytrack.trackers.catalog.make_tracker` reads it (``imm``,
+        ``kalman-cv:sigma_w=10``), or ``kalata``: fixed gains by their tracking index. Numbers that
+        it gives are where the search begins.
+    free : collection of str, optional
+        Which numbers are free. Of a rule base ``outputs`` (the levels of all outputs), ``sets``
+        (the corners of the sets of inputs), ``normalization`` (the numbers of the scheduler
+        settings), one variable, ``lag.ps`` or ``rho``; all of them unless given. Of a scheduler or
+        tracker the names of its parameters; unless given, those of its family.
+    sigma : float, optional
+        Standard deviation of recorded plots (m), if the tracker needs it.
+    truth : str or path, optional
+        File of the true positions of recorded plots. Without it predictions are compared with the
+        plots.
+    time, id, axes, sort
+        As for `fuzzytrack.io.read_tracks`.
+    runs : int
+        Number of runs of a scenario.
+    seed : int
+        Seed of the noise of a scenario, of the folds and of the searches. The same seed gives the
+        same numbers, however many workers there are.
+    trials : int, optional
+        Trackers that each search tries; 60 and 40 more for each free number unless given.
+    folds : int
+        Number of folds. Each holds out some tracks or, of fewer than three tracks, some blocks of
+        time.
+    executor : concurrent.futures.Executor, optional
+        Runs the trials; in this process unless given.
+    state : str or path, optional
+        File in which the losses are kept, so that an interrupted search can be continued.
+    resume : bool
+        Whether to continue the searches whose losses `state` holds, if any.
+    progress : callable, optional
+        Called with the share of the trials that are done.
+
+    Returns
+    -------
+    Tuned
+
+    Raises
+    ------
+    DataError, RuleBaseError
+        If the data hold too few plots, or the rule base cannot be read or schedule gains.
+    ValueError
+        If there is no such tracker or number, nothing is free or has an effect, the tracker needs
+        `sigma` and there is none, the package ``cmaes`` is missing, or `state` is of another
+        search.
+    OSError
+        If a file cannot be read or written.
+
+    Notes
+    -----
+    On every fold, and on all data, the numbers are searched by CMA-ES (Hansen 2016) for the least
+    RMS error of predictions at the plots from the third of a track on, and so are those of two
+    rivals: a fixed pair of gains, and a Kalman filter of nearly constant velocity. What is returned
+    was tuned on all data; held-out errors are those of trackers that did not see them.
+    """
+    found = _data(data, sigma, truth, time, id, axes, sort, runs, seed)
+    candidates = _candidates(tracker, free, found)
+    divided = make_folds(found, folds, seed)
+    families = [candidates, *_rivals(candidates, found)]
+    planned = sum(_planned(family, trials) for family in families) * (divided.number + 1)
+    compiled = planned * found.coordinates > _COMPILE_ABOVE
+    run = Trials(found, divided, compiled)
+    _check_sigma(candidates, found)
+    plans = tuple(
+        _Plan(number, held)
+        for held in (*range(divided.number), _ALL)
+        for number in range(len(families))
+    )
+    journal = _Journal.open(state, _job(found, families, plans, trials, seed), resume)
+    (candidates, unused), *rivals = (_with_effect(family, run) for family in families)
+    families = [candidates, *(rival for rival, _ in rivals)]
+    searches = [
+        Search(families[p.family].space, _seed(seed, k), _planned(families[p.family], trials))
+        for k, p in enumerate(plans)
+    ]
+    for search, losses in zip(searches, journal.losses, strict=False):
+        search.replay(losses)
+    _search(searches, _Work(run, tuple(families), plans), executor, journal, progress)
+    best = {plan: search.best for plan, search in zip(plans, searches, strict=True)}
+    rows = _rows(families, best, run)
+    numbers = best[_Plan(0, _ALL)]
+    tuned = Tuned(
+        tracker=candidates.tracker(numbers),
+        text=candidates.text(numbers),
+        is_rulebase=isinstance(candidates, RuleBaseNumbers),
+        numbers=_named(candidates, numbers),
+        start=_named(candidates, candidates.space.start),
+        unused=unused,
+        rows=rows,
+        data=found.name,
+        objective="predictions, against the truth" if found.has_truth else "innovations",
+        folds=divided.number,
+        units=divided.kind,
+        plots=int(divided.plots.sum()),
+        trials=sum(len(search.losses) for search in searches),
+        seed=seed,
+    )
+    return replace(tuned, text=with_head(tuned.text, _head(tuned))) if tuned.is_rulebase else tuned
+
+
+# -------------------------------------------------------------------- what is tuned
+
+
+def _data(
+    data: TuningData | Scenario | str | os.PathLike[str],
+    sigma: float | None,
+    truth: str | os.PathLike[str] | None,
+    time: str | None,
+    id: str | None,
+    axes: Sequence[str] | None,
+    sort: bool,
+    runs: int,
+    seed: int,
+) -> TuningData:
+    if isinstance(data, TuningData):
+        return data
+    if isinstance(data, str) and (data in shipped_scenarios() or specs.is_file(data)):
+        data = load_scenario(data)
+    if isinstance(data, Scenario):
+        return simulated(data, runs, seed)
+    return recorded(data, sigma=sigma, truth=truth, time=time, id=id, axes=axes, sort=sort)
+
+
+def _candidates(
+    tracker: str | RuleBase, free: Collection[str] | None, data: TuningData
+) -> Candidates:
+    if isinstance(tracker, RuleBase):
+        return rulebase_numbers(dumps_rulebase(tracker), tracker.name, {}, free)
+    name, options = specs.split(tracker, "tracker")
+    if specs.is_file(name) or name in shipped_rulebases():
+        path = Path(name) if specs.is_file(name) else rulebase_path(name)
+        with open(path, encoding="utf-8", newline="") as stream:
+            text = stream.read()
+        return rulebase_numbers(text, name, options, free)
+    return specification(tracker, free, data.noise / data.interval**2)
+
+
+def _rivals(candidates: Candidates, data: TuningData) -> list[Candidates]:
+    """The best fixed pair and the Kalman filter, unless they are what is tuned."""
+    unit = data.noise / data.interval**2
+    kalman = "kalman-cv" if data.has_sigma else f"kalman-cv:sigma_w={data.noise:.6g}"
+    named = {"best fixed pair": "fixed", "Kalman filter (CV)": kalman}
+    return [
+        replace(specification(text, None, unit), title=title)
+        for title, text in named.items()
+        if candidates.title.partition(":")[0] != text.partition(":")[0]
+    ]
+
+
+def _check_sigma(candidates: Candidates, data: TuningData) -> None:
+    tracker: Any = candidates.tracker(candidates.space.start)
+    if getattr(tracker, "needs_sigma", False) and not data.has_sigma:
+        raise ValueError(
+            f"sigma: {candidates.title} needs the standard deviation of the plots, which the data "
+            "do not have"
+        )
+
+
+def _with_effect(candidates: Candidates, run: Trials) -> tuple[Candidates, tuple[str, ...]]:
+    """The same with those numbers free that have an effect, and the names of the others."""
+    space = candidates.space
+    places = [[0.0] * len(space.parameters)]
+    for k in range(len(space.parameters)):
+        for step in (-1.0, 1.0):
+            places.append([step * (j == k) for j in range(len(space.parameters))])
+    bounds = space.bounds
+    trials = [space.numbers(np.clip(place, bounds[:, 0], bounds[:, 1])) for place in places]
+    start, *moved = run.errors(candidates, trials)
+    used = [
+        k
+        for k in range(len(space.parameters))
+        if any(not np.array_equal(start, moved[2 * k + j]) for j in (0, 1))
+    ]
+    names = [p.name for p in space.parameters]
+    if not used:
+        raise ValueError(
+            f"free: {', '.join(names)}: without an effect on these data; there is nothing to tune"
+        )
+    unused = tuple(name for k, name in enumerate(names) if k not in used)
+    return candidates.restricted(used), unused
+
+
+# -------------------------------------------------------------------- the searches
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """A search: which family, and which fold it does not see."""
+
+    family: int
+    held: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """What a worker needs for a generation of any search."""
+
+    run: Trials
+    families: tuple[Candidates, ...]
+    plans: tuple[_Plan, ...]
+
+    def losses(self, task: tuple[int, tuple[Numbers, ...]]) -> list[float]:
+        number, trials = task
+        plan = self.plans[number]
+        return self.run.losses(self.families[plan.family], trials, plan.held)
+
+
+def _planned(family: Candidates, trials: int | None) -> int:
+    return trials or _TRIALS + _TRIALS_EACH * len(family.space.parameters)
+
+
+def _seed(seed: int, number: int) -> int:
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+
+
+def _search(
+    searches: Sequence[Search],
+    work: _Work,
+    executor: Executor | None,
+    journal: _Journal,
+    progress: Progress | None,
+) -> None:
+    """Do all searches, a generation of each at a time."""
+    while True:
+        tasks = [(k, tuple(s.ask())) for k, s in enumerate(searches) if not s.finished]
+        if not tasks:
+            return
+        try:
+            for (number, _), losses in run_tasks(work.losses, tasks, executor):
+                searches[number].tell(losses)
+                if progress is not None:
+                    progress(_share(searches))
+        finally:
+            journal.write([search.losses for search in searches])
+
+
+def _share(searches: Sequence[Search]) -> float:
+    done = sum(s.trials if s.finished else min(len(s.losses), s.trials) for s in searches)
+    return done / sum(search.trials for search in searches)
+
+
+@dataclass(frozen=True, eq=False)
+class _Journal:
+    """Losses of all searches in a file, with all that they depend on."""
+
+    path: Path | None
+    job: dict[str, str]
+    losses: list[list[float]]
+
+    @classmethod
+    def open(
+        cls, path: str | os.PathLike[str] | None, job: dict[str, str], resume: bool
+    ) -> _Journal:
+        if path is None:
+            if resume:
+                raise ValueError("resume: needs the state file of the search to continue")
+            return cls(None, job, [])
+        place = Path(path)
+        if not place.exists():
+            return cls(place, job, [])
+        if not resume:
+            raise ValueError(
+                f"state: {place} holds an earlier search; resume it or choose another file"
+            )
+        try:
+            found = json.loads(place.read_text(encoding="utf-8"))
+            then, losses = (
+                dict(found["job"]),
+                [[float(x) for x in each] for each in found["losses"]],
+            )
+        except (ValueError, KeyError, TypeError) as error:
+            raise ValueError(f"resume: {place} holds no search: {error}") from error
+        for key, now in job.items():
+            if then.get(key) != now:
+                raise ValueError(
+                    f"resume: {key} is {now}, in the search of {place} it was {then.get(key)}; "
+                    "give the same or choose another file"
+                )
+        return cls(place, job, losses)
+
+    def write(self, losses: list[list[float]]) -> None:
+        if self.path is not None:
+            with whole_file(self.path) as draft:
+                draft.write_text(json.dumps({"job": self.job, "losses": losses}), encoding="utf-8")
+
+
+def _job(
+    data: TuningData,
+    families: Sequence[Candidates],
+    plans: Sequence[_Plan],
+    trials: int | None,
+    seed: int,
+) -> dict[str, str]:
+    """Everything that the losses depend on, as text."""
+    digest = hashlib.sha256()
+    for track in data.tracks:
+        for values in (track.time, track.plots, track.truth, track.sigma):
+            digest.update(b"-" if values is None else np.ascontiguousarray(values).tobytes())
+    start = families[0].space.start
+    return {
+        "fuzzytrack": __version__,
+        "seed": str(seed),
+        "data": f"{data.name} {digest.hexdigest()[:16]}",
+        "tracker": hashlib.sha256(families[0].text(start).encode()).hexdigest()[:16],
+        "free numbers": ", ".join(p.name for p in families[0].space.parameters),
+        "searches": str(len(plans)),
+        "trials": str(trials),
+    }
+
+
+# -------------------------------------------------------------------- what is reported
+
+
+def _rows(
+    families: Sequence[Candidates], best: dict[_Plan, Numbers], run: Trials
+) -> tuple[Row, ...]:
+    folds = run.folds
+    named: list[tuple[str, int, bool]] = [("start", 0, False)]
+    named += [(family.title, k, True) for k, family in enumerate(families[1:], 1)]
+    named.append(("tuned", 0, True))
+    held, training = {}, {}
+    for name, number, is_tuned in named:
+        family = families[number]
+        tried = [
+            best[_Plan(number, k)] if is_tuned else family.space.start for k in range(folds.number)
+        ]
+        sums = run.errors(family, tried)
+        held[name] = np.array([sums[k][unit] for unit, k in enumerate(folds.fold)])
+        inside = [float(s[folds.fold != k].sum()) for k, s in enumerate(sums)]
+        plots = [int(folds.plots[folds.fold != k].sum()) for k in range(folds.number)]
+        training[name] = (sum(inside) / sum(plots)) ** 0.5
+    total, start = int(folds.plots.sum()), families[0].space.start
+    return tuple(
+        Row(
+            name,
+            training[name],
+            float(held[name].sum() / total) ** 0.5,
+            None if name == "tuned" else change(held["tuned"], held[name]),
+            _named(families[number], best[_Plan(number, _ALL)] if is_tuned else start),
+        )
+        for name, number, is_tuned in named
+    )
+
+
+def _named(family: Candidates, numbers: Numbers) -> dict[str, float]:
+    return {p.name: n for p, n in zip(family.space.parameters, numbers, strict=True)}
+
+
+def _head(tuned: Tuned) -> list[str]:
+    """What the head of a tuned rule base says."""
+    return [
+        f"Tuned on {tuned.data} with seed {tuned.seed} by fuzzytrack {__version__}, "
+        f"{datetime.date.today().isoformat()}.",
+        f"Objective: RMS of {tuned.objective}, {tuned.plots} plots; {tuned.folds} folds by "
+        f"{tuned.units}.",
+        f"Held-out error against the start: {tuned.rows[0]}; free: {', '.join(tuned.numbers)}.",
+    ]

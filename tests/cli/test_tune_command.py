@@ -1,0 +1,110 @@
+import json
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.cli import tune as tuning
+from fuzzytrack.fuzzy.loading import rulebase_path
+from fuzzytrack.trackers.catalog import make_tracker
+
+QUICK = ("--runs", 6, "--trials", 6, "--folds", 2)
+
+
+@pytest.fixture
+def recorded(csv):
+    """A long straight track with noise."""
+    rng = np.random.default_rng(0)
+    rows = [f"{k},{4 * k + rng.normal(0, 9):.3f},{rng.normal(0, 9):.3f}" for k in range(240)]
+    return csv("\n".join(["t,x,y", *rows]))
+
+
+def test_a_specification_is_printed_to_be_typed(run, recorded):
+    result = run("tune", recorded, "--tracker", "fixed:alpha=0.8:beta=0.9", *QUICK[2:])
+    assert result.exit_code == 0, result.output
+    lines = result.stdout.splitlines()
+    assert lines[0].startswith(f"{recorded}: 238 plots, 2 folds by blocks of time, ")
+    assert lines[1] == "fewer than 3 tracks: blocks of time are held out instead of tracks"
+    assert lines[2] == "RMS of innovations"
+    spec = lines[-1].removeprefix("tracker: ")
+    assert spec.startswith("fixed:alpha=")
+    make_tracker(spec)
+    assert lines[-2].startswith(("worth it: ", "not worth it: "))
+    # The same in Python.
+    found = ft.tune(recorded, "fixed:alpha=0.8:beta=0.9", trials=6, folds=2)
+    assert found.text == spec
+    for line in found.report.splitlines()[2:-1]:
+        assert line.split()[0] in result.stdout
+    assert found.report.splitlines()[-1] == found.verdict == lines[-2]
+
+
+def test_a_tuned_rule_base_is_written(run, tmp_path):
+    out = tmp_path / "tuned.yaml"
+    words = ("tune", "mixed", "--tracker", "omega-schedule", "--free", "rho,lag.ps", "-o", out)
+    result = run(*words, *QUICK)
+    assert result.exit_code == 0, result.output
+    assert f"wrote {out}" in result.stdout
+    before = out.read_bytes()
+    assert b"# Tuned on mixed with seed 0" in before
+    # Processes, and what is printed, do not matter.
+    result = run(*words, *QUICK, "--json", "--jobs", 2)
+    assert out.read_bytes() == before
+    found = json.loads(result.stdout)
+    assert found["specification"] is None
+    assert found["output"] == str(out)
+    assert list(found["numbers"]) == ["lag.ps", "lag.pm", "rho"]
+    assert [row["name"] for row in found["errors"]][::3] == ["start", "tuned"]
+    assert found["errors"][-1]["change"] is None
+    rules = ft.load_rulebase(out)
+    assert float(dict(rules.scheduler)["rho"]) == found["numbers"]["rho"]
+    assert rules.input("lag").sets[4].parameters[1] == found["numbers"]["lag.ps"]
+
+
+def test_numbers_without_an_effect_are_told(run, csv):
+    text = rulebase_path("omega-schedule").read_text(encoding="utf-8")
+    path = csv(text.replace("{singleton: [0.556]}", "{gaussmf: [0.556, 0.05]}"), "rules.yaml")
+    result = run("tune", "mixed", "--tracker", path, "--free", "stiffness.M", *QUICK)
+    assert "stiffness.M.sigma: without an effect on these data, left as it was" in result.stdout
+
+
+def test_an_interrupted_search_is_resumed(run, tmp_path, monkeypatch):
+    state = tmp_path / "state.json"
+    words = ("tune", "mixed", "--tracker", "fixed", "--state", state, *QUICK)
+
+    def interrupted(*args, **options):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(tuning, "tune_tracker", interrupted)
+        result = run(*words)
+        assert result.exit_code == 130
+        assert result.stderr == (f"interrupted; the search is in {state}; continue with --resume\n")
+        assert run("tune", "mixed", "--tracker", "fixed").exit_code == 130
+    assert run(*words).exit_code == 0
+    assert run(*words, "--resume").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("mixed", "--tracker", "kalmn-cv"), "tracker 'kalmn-cv': no such tracker; did you mean"),
+        (
+            ("mixed", "--tracker", "fixed", "--free", "gama"),
+            "--free: tracker 'fixed' has no number",
+        ),
+        (("mixed", "--tracker", "omega-schedule", "--free", "a"), "--free: rule base 'omega-sched"),
+        (("mixed", "--tracker", "tipper"), "scheduler setting"),
+        (("mixed", "--tracker", "fixed", "-o", "x.yaml"), "--output: a tuned fixed has no file"),
+        (("mixed", "--tracker", "fixed", "--resume"), "--resume: needs the state file"),
+        (("plots.csv", "--tracker", "fixed"), "plots.csv: "),
+        (("nowhere.yaml", "--tracker", "fixed"), "nowhere.yaml"),
+        (("mixed", "--tracker", "fixed", "--runs", "2"), "plots can be scored"),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(fails, plots, words, message):
+    assert message in fails("tune", *[plots if w == "plots.csv" else w for w in words])
+
+
+def test_data_without_sigma_are_refused_where_it_is_needed(fails, recorded):
+    line = fails("tune", recorded, "--tracker", "omega-schedule")
+    assert line.startswith("error: --sigma: omega-schedule needs the standard deviation")

@@ -1,0 +1,211 @@
+import json
+import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path
+from fuzzytrack.gains import kalata
+from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.tuning import TuningData, TuningTrack, tuner
+from fuzzytrack.tuning.trial import REFUSED, Trials
+from fuzzytrack.tuning.tuned import change, with_head
+
+QUICK = {"runs": 6, "trials": 8, "folds": 2, "seed": 3}
+LONGER = {**QUICK, "trials": 20}
+
+
+def random_walk(tracks, steps, index, seed=5):
+    """Targets with an acceleration drawn anew for each step, for which Kalata's gains are best."""
+    rng, found = np.random.default_rng(seed), []
+    for k in range(tracks):
+        a = rng.normal(0, index, steps)
+        v = np.concatenate([[0.0], np.cumsum(a)[:-1]])
+        x = np.concatenate([[0.0], np.cumsum(v + a / 2)[:-1]])[:, None]
+        plots, sigma = x + rng.normal(0, 1, x.shape), np.ones(x.shape)
+        found.append(TuningTrack(str(k), np.arange(float(steps)), plots, x, sigma))
+    return TuningData("random walk", tuple(found))
+
+
+def numbers(found):
+    return found.to_json_dict()
+
+
+def test_fixed_gains_come_near_those_of_the_steady_kalman_filter():
+    found = ft.tune(random_walk(12, 100, 0.6), "fixed", trials=40, folds=2)
+    alpha, beta = kalata(0.6)
+    assert found.numbers["alpha"] == pytest.approx(float(alpha), rel=0.1)
+    assert found.numbers["beta"] == pytest.approx(float(beta), rel=0.2)
+    assert found.tracker == make_tracker(found.text)
+    start, kalman, tuned = found.rows
+    assert (start.name, kalman.name, tuned.name) == ("start", "Kalman filter (CV)", "tuned")
+    # The Kalman filter has the same gains but at the start of a track, where it is better.
+    assert kalman.numbers["sigma_v"] == pytest.approx(0.6, rel=0.25)
+    assert tuned.held_out == pytest.approx(kalman.held_out, rel=0.1)
+    assert found.worth_it == (start.change[2] < 0)
+    assert found.units == "tracks"
+
+
+def test_what_is_tuned_already_is_not_worth_it():
+    alpha, beta = (float(g) for g in kalata(0.6))
+    text = f"fixed:alpha={alpha}:beta={beta}"
+    found = ft.tune(random_walk(8, 60, 0.6), text, trials=12, folds=2)
+    assert not found.worth_it
+    assert found.verdict.startswith("not worth it: held-out change against the start ")
+    assert found.start == {"alpha": alpha, "beta": beta}
+
+
+def test_a_rule_base_is_tuned_and_loads_again_to_the_tuned_tracker(tmp_path):
+    found = ft.tune("mixed", "omega-schedule", free=["stiffness", "rho"], **QUICK)
+    path = tmp_path / "tuned.yaml"
+    found.save(path)
+    assert make_tracker(str(path)) == found.tracker
+    assert path.read_text(encoding="utf-8") == found.text
+    # All but the head and the free numbers is as it was, comments and layout included.
+    before = rulebase_path("omega-schedule").read_text(encoding="utf-8").splitlines()
+    after = path.read_text(encoding="utf-8").splitlines()
+    assert after[0] == before[0]
+    head, rest = after[1:4], after[4:]
+    differ = [a.split()[0] for a, b in zip(before[1:], rest, strict=True) if a != b]
+    assert {"universe:", "Z:", "S:", "M:", "L:", "scheduler:"} >= set(differ) >= {"scheduler:"}
+    assert head[0].startswith("# Tuned on mixed with seed 3 by fuzzytrack ")
+    assert head[1].startswith("# Objective: RMS of predictions, against the truth, ")
+    assert f"{found.rows[0]}" in head[2]
+    names = ["start", "best fixed pair", "Kalman filter (CV)", "tuned"]
+    assert [row.name for row in found.rows] == names
+    assert found.rows[-1].training <= found.rows[0].training
+    # A rule base that was not loaded from a file is tuned as well.
+    same = ft.tune("mixed", load_rulebase("omega-schedule"), free=["stiffness", "rho"], **QUICK)
+    assert same.numbers == found.numbers
+    assert loads_rulebase(same.text) == loads_rulebase(found.text)
+
+
+def test_errors_are_those_of_the_trackers_run_alone():
+    data = random_walk(4, 70, 0.5)
+    found = ft.tune(data, "kalman-cv", trials=6, folds=2)
+    total = 0.0
+    for track in data.tracks:
+        predicted = make_tracker("kalman-cv:sigma_v=0.5").run(track.time, track.plots, 1.0)
+        total += float(((predicted.predicted - track.truth)[2:] ** 2).sum())
+    expected = math.sqrt(total / (4 * 68))
+    assert found.rows[0].held_out == pytest.approx(expected, rel=1e-9)
+    assert found.rows[0].training == pytest.approx(expected, rel=1e-9)
+    assert found.start == {"sigma_v": 0.5}
+
+
+def test_the_number_of_workers_does_not_matter():
+    alone = ft.tune("mixed", "kalman-cv", **QUICK)
+    with ThreadPoolExecutor(3) as pool:
+        apart = ft.tune("mixed", "kalman-cv", executor=pool, **QUICK)
+    assert numbers(apart) == numbers(alone)
+
+
+def test_errors_of_compiled_trials_are_the_same_to_the_bit():
+    data = random_walk(4, 70, 0.5)
+    candidates = tuner._candidates("fixed", None, data)
+    trials = [(0.5, 0.2), (0.7, 0.3), (1.0, 3.0), (0.31, 0.04)]
+    plain, compiled = (
+        Trials(data, tuner.make_folds(data, 2, 0), compiled).errors(candidates, trials)
+        for compiled in (False, True)
+    )
+    np.testing.assert_array_equal(compiled, plain)
+    # Another process has all that it needs.
+    again = pickle.loads(pickle.dumps(Trials(data, tuner.make_folds(data, 2, 0), False)))
+    np.testing.assert_array_equal(again.errors(candidates, trials), plain)
+
+
+def test_a_search_that_is_interrupted_goes_on_to_the_same_end(tmp_path):
+    state, shares = tmp_path / "search.json", []
+    whole = ft.tune("mixed", "fixed", progress=shares.append, **LONGER)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+    def interrupt(share):
+        if share > 0.7:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ft.tune("mixed", "fixed", state=state, progress=interrupt, **LONGER)
+    with pytest.raises(ValueError, match=r"state: .* holds an earlier search; resume it or"):
+        ft.tune("mixed", "fixed", state=state, **LONGER)
+    with pytest.raises(ValueError, match=r"resume: seed is 4, in the search of .* it was 3"):
+        ft.tune("mixed", "fixed", state=state, resume=True, **{**LONGER, "seed": 4})
+    done = sum(map(len, json.loads(state.read_text())["losses"]))
+    assert done > 0
+    shares.clear()
+    resumed = ft.tune("mixed", "fixed", state=state, resume=True, progress=shares.append, **LONGER)
+    assert numbers(resumed) == numbers(whole)
+    assert shares[0] > 0.3
+    # Of a search that is finished nothing is left to do.
+    assert numbers(ft.tune("mixed", "fixed", state=state, resume=True, **LONGER)) == numbers(whole)
+    state.write_text("[]")
+    with pytest.raises(ValueError, match=r"resume: .*search\.json holds no search"):
+        ft.tune("mixed", "fixed", state=state, resume=True, **LONGER)
+    with pytest.raises(ValueError, match="resume: needs the state file"):
+        ft.tune("mixed", "fixed", resume=True, **LONGER)
+
+
+def test_numbers_without_an_effect_are_told_and_left_alone():
+    # Weighted centers: how wide a set of an output is does not matter, where it is does.
+    text = rulebase_path("omega-schedule").read_text(encoding="utf-8")
+    rules = loads_rulebase(text.replace("M: {singleton: [0.556]}", "M: {gaussmf: [0.556, 0.05]}"))
+    found = ft.tune("mixed", rules, free=["stiffness.M"], **QUICK)
+    assert found.unused == ("stiffness.M.sigma",)
+    assert list(found.numbers) == ["stiffness.M"]
+    assert loads_rulebase(found.text).output("stiffness").sets[2].parameters[1] == 0.05
+    with pytest.raises(ValueError, match=r"free: stiffness\.M\.sigma: without an effect on these"):
+        ft.tune("mixed", rules, free=["stiffness.M.sigma"], **QUICK)
+
+
+def test_recorded_plots_without_truth_are_compared_with_themselves(tmp_path):
+    path = tmp_path / "plots.csv"
+    many = np.random.default_rng(1).normal(0, 1, (250, 2)).cumsum(axis=0)
+    path.write_text("t,x,y\n" + "\n".join(f"{k},{x},{y}" for k, (x, y) in enumerate(many)))
+    found = ft.tune(path, "fixed", trials=8, folds=2)
+    assert found.units == "blocks of time"
+    assert found.objective == "innovations"
+    # Without a sigma, the Kalman filter has an estimate of it.
+    assert math.isfinite(found.rows[1].held_out)
+    with pytest.raises(ValueError, match="sigma: omega-schedule needs the standard deviation of"):
+        ft.tune(path, "omega-schedule", trials=8)
+    with pytest.raises(
+        ValueError, match="output: a tuned tracker of this kind has no file; type f"
+    ):
+        found.save(tmp_path / "x.yaml")
+
+
+def test_numbers_that_make_no_tracker_are_refused():
+    data = random_walk(4, 70, 0.5)
+    run = Trials(data, tuner.make_folds(data, 2, 0), compiled=False)
+    candidates = tuner._candidates("fixed", None, data)
+    good, bad = run.losses(candidates, [(0.5, 0.2), (1.0, 3.0)], -1)
+    assert bad == REFUSED > good
+    assert "compiled=False" in repr(run)
+
+
+def test_the_change_is_that_of_paired_errors():
+    rng = np.random.default_rng(2)
+    other = rng.gamma(3.0, 1.0, 400)
+    tuned = 0.81 * other * np.exp(rng.normal(0, 0.1, 400))
+    middle, low, high = change(tuned, other)
+    assert middle == pytest.approx(math.sqrt(tuned.sum() / other.sum()) - 1, rel=1e-12)
+    # Brute force: the bootstrap.
+    draws = rng.integers(0, 400, (4000, 400))
+    ratios = np.sqrt(tuned[draws].sum(axis=1) / other[draws].sum(axis=1)) - 1
+    assert (low, high) == pytest.approx(tuple(np.quantile(ratios, [0.025, 0.975])), abs=0.001)
+    assert change(tuned, np.full(400, np.inf)) == (-1.0, -1.0, -1.0)
+    assert change(np.full(400, np.inf), other)[0] == math.inf
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_comments_come_after_the_one_that_names_the_schema(end):
+    head = "# yaml-language-server: $schema=x.json"
+    lines = ["one", "two\x07"]
+    comments = [f"# one{end}", f"# two?{end}"]
+    assert with_head(f"{head}{end}a: 1{end}", lines) == "".join(
+        [head, end, *comments, f"a: 1{end}"]
+    )
+    assert with_head(f"\ufeffa: 1{end}", lines) == "".join(["\ufeff", *comments, f"a: 1{end}"])
