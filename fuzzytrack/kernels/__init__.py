@@ -6,6 +6,8 @@ The only package that imports Numba and llvmlite. It has nothing about tracks in
 `language`     words that such a function may use beside plain Python
 `rebuild`      copies of functions with other values in place; the content of one
 `compile`      a function to compiled code, with all that it calls
+`shared_code`  code that functions share which differ only in numbers
+`slots`        a number that compiled code reads from memory
 `llvm`         what Numba's public interface does not offer
 `cache`        the folder in which compiled code is kept
 =============  =====================================================================
@@ -20,6 +22,9 @@ what may change with any release:
 - Function attributes, metadata and blocks of ``llvmlite.ir``, and ``numba.core.cgutils``: to tell
   LLVM that loops may use wide vectors and have independent iterations. When they change, compiling
   fails, or the code becomes several times slower with the same results.
+- ``numba.core.typeconv.castgraph.Conversion`` and ``lower_constant``, in `slots`: a type whose
+  constants are read from memory. When they change, importing it fails, or compiling with a
+  `TypingError`.
 - ``_Intrinsic._defn``, in `rebuild`: the content of an intrinsic.
 
 So pyproject.toml allows only versions of Numba that were tried. To try another one, install it, run

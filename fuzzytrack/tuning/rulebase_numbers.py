@@ -10,6 +10,7 @@ from fuzzytrack.fuzzy.membership import SHAPES, FuzzySet
 from fuzzytrack.fuzzy.numbers import NumberPlaces, Place, Span, replaced
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.schedulers.settings import KEYS
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import tracker_of_rules
 from fuzzytrack.tuning.candidates import Candidates, Choice, chosen
@@ -245,9 +246,10 @@ def _widths(group: _Group, numbers: NumberPlaces) -> Iterator[_Found]:
 def _settings(numbers: NumberPlaces) -> Iterator[_Found]:
     """Numbers of the scheduler settings."""
     for place, value in numbers.values.items():
-        if place[0] != "scheduler" or not value > 0:
+        name = str(place[-1])
+        # Words, and the period to which gains belong, are no numbers of the normalization.
+        if place[0] != "scheduler" or name in KEYS or not value > 0:
             continue
-        name = str(place[1])
         if name in _SHARES:
             parameter = Parameter(name, value, 0.0, 1.0, "probability")
         else:
