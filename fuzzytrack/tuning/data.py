@@ -200,8 +200,10 @@ def simulated(scenario: Scenario, runs: int, seed: int) -> TuningData:
     position, _ = scenario.truth(0, runs)
     plots = scenario.sensors.measure(position, streams(seed, runs))
     truth = np.broadcast_to(truth_of_runs(position, runs), plots.z.shape)
+    times = scenario.times(0, runs)
+    own = np.broadcast_to(times.reshape(len(times), -1), plots.z.shape[:2])
     tracks = tuple(
-        TuningTrack(str(k + 1), scenario.time, plots.z[:, k], truth[:, k], plots.sigma[:, k])
+        TuningTrack(str(k + 1), own[:, k], plots.z[:, k], truth[:, k], plots.sigma[:, k])
         for k in range(runs)
     )
     return TuningData(scenario.name, tracks)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import DataError
-from fuzzytrack.simulation.scenario_files import load_scenario
+from fuzzytrack.simulation.scenario_files import load_scenario, loads_scenario
 from fuzzytrack.tuning.data import TuningData, TuningTrack, recorded, simulated
 from fuzzytrack.tuning.folds import make_folds
 
@@ -84,6 +84,17 @@ def test_runs_of_a_scenario_have_their_truth_and_sigma():
     scaled = np.concatenate([(t.plots - t.truth) / t.sigma for t in data.tracks])
     assert np.nanmean(scaled**2) == pytest.approx(1, rel=0.2)
     assert "TuningData" in repr(data)
+
+
+def test_runs_of_a_scenario_have_their_own_times():
+    scenario = loads_scenario(
+        "scenario: 1\nname: own\ntarget: {set: mixed, tracks: 3}\nsensors: {sigma: 1}\n"
+        "sampling: {jitter: 0.3}\n"
+    )
+    data = simulated(scenario, 5, seed=3)
+    for k, one in enumerate(data.tracks):
+        np.testing.assert_array_equal(one.time, scenario.time[:, k % 3])
+        np.testing.assert_array_equal(one.truth, scenario.position[:, k % 3])
 
 
 def test_recorded_plots_with_and_without_truth(tmp_path):
