@@ -47,7 +47,7 @@ def defaults() -> dict[str, str]:
     rules = ("chan-style", "stiffness-damping", "stiffness-damping-cog", "stiffness-damping-wide")
     return {
         **{name: name for name in (*rules, "omega-schedule")},
-        "fixed, published": "fixed:alpha=0.5377:beta=0.2018",
+        "fixed (published)": "fixed:alpha=0.5377:beta=0.2018",
         "growing memory": "growing-memory",
         "linear combination": "linear-combination",
         "track quality": "track-quality",
@@ -61,18 +61,18 @@ def tuned(conditions: Conditions) -> dict[str, str]:
     a, stay = conditions.acceleration, conditions.stay
     return {
         "fixed .543 .548": "fixed:alpha=.543:beta=.548",
-        "Benedict-Bordner, tuned": "benedict-bordner:alpha=0.7446",
-        "fading memory, tuned": "fading-memory:xi=0.5921",
-        "growing memory, tuned": "growing-memory:limit=3",
-        "linear combination, tuned": "linear-combination:alpha=0.8188:weight=0.9494",
+        "Benedict-Bordner (tuned)": "benedict-bordner:alpha=0.7446",
+        "fading memory (tuned)": "fading-memory:xi=0.5921",
+        "growing memory (tuned)": "growing-memory:limit=3",
+        "linear combination (tuned)": "linear-combination:alpha=0.8188:weight=0.9494",
         "Kalman CV": f"kalman-cv:sigma_v={0.8697 * a}",
         "Kalman CA": f"kalman-ca:sigma_v={0.2078 * a}:acceleration_sigma={0.005041 * a}",
-        "innovation variance, tuned": f"innovation:sigma_d={0.3445 * a}:window=9",
-        "track quality, tuned": "track-quality:cap=1.763",
-        "window search, tuned": "window-search:window=12:alpha=0.6529",
-        "bank, tuned": "bank:lowest=0.3621:highest=0.9048:forget=0.6779",
-        "stiffness-damping, tuned": str(_TUNED / "stiffness-damping-tuned.yaml"),
-        "omega-schedule, tuned": str(_TUNED / "omega-schedule-tuned.yaml"),
+        "innovation variance (tuned)": f"innovation:sigma_d={0.3445 * a}:window=9",
+        "track quality (tuned)": "track-quality:cap=1.763",
+        "window search (tuned)": "window-search:window=12:alpha=0.6529",
+        "bank (tuned)": "bank:lowest=0.3621:highest=0.9048:forget=0.6779",
+        "stiffness-damping (tuned)": str(_TUNED / "stiffness-damping-tuned.yaml"),
+        "omega-schedule (tuned)": str(_TUNED / "omega-schedule-tuned.yaml"),
         "IMM CV/CV": (
             f"imm:quiet_sigma={0.221 * a}:maneuver_sigma={1.879 * a}"
             f":quiet_stay={stay(0.9706)}:maneuver_stay={stay(0.883)}:maneuver=cv"
@@ -84,6 +84,13 @@ def tuned(conditions: Conditions) -> dict[str, str]:
     }
 
 
+def with_period(conditions: Conditions) -> dict[str, str]:
+    """Dimensionless gains that are converted from the period that they belong to."""
+    given = {**defaults(), **tuned(conditions)}
+    names = ("fixed .543 .548", "Benedict-Bordner (tuned)", "stiffness-damping", "omega-schedule")
+    return {f"{name} + period": f"{given[name]}:period={conditions.period}" for name in names}
+
+
 def ranked(conditions: Conditions) -> dict[str, str]:
     """All of them by name, as `fuzzytrack.trackers.catalog.make_tracker` reads them."""
-    return {**defaults(), **tuned(conditions)}
+    return {**defaults(), **tuned(conditions), **with_period(conditions)}
