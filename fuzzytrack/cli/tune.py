@@ -60,7 +60,8 @@ def tune(
     truth: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE", help="True positions. [default: compare predictions with plots]"
+            metavar="FILE|COL,COL",
+            help="True positions, or their columns. [default: the plots are]",
         ),
     ] = None,
     runs: Annotated[int, typer.Option(min=1, help="Runs of a scenario.")] = 60,
@@ -70,6 +71,9 @@ def tune(
         typer.Option(min=1, help="Trackers a search tries. [default: 60, and 40 a number]"),
     ] = None,
     folds: Annotated[int, typer.Option(min=2, help="Folds, each held out once.")] = 5,
+    criterion: Annotated[
+        str, typer.Option(metavar="rms|likelihood", help="What is minimized.")
+    ] = "rms",
     jobs: Annotated[int, typer.Option(min=1, help="Processes of this computer.")] = 1,
     state: Annotated[
         str | None,
@@ -83,8 +87,8 @@ def tune(
 ) -> None:
     """Tune the numbers of a tracker, and judge it on tracks that it was not tuned on.
 
-    The same seed gives the same numbers on any number of processes. Without --truth the objective
-    is the RMS of the innovations of recorded plots.
+    The same seed gives the same numbers on any number of processes. Without --truth, predictions of
+    recorded plots are compared with the plots.
     """
     options.load_plugins(plugin)
     if output is not None:
@@ -105,6 +109,7 @@ def tune(
                 seed=seed,
                 trials=trials,
                 folds=folds,
+                criterion=criterion,
                 executor=executor,
                 state=state,
                 resume=resume,
@@ -142,11 +147,13 @@ def _print(found: Tuned) -> None:
     )
     if found.units != "tracks":
         say("fewer than 3 tracks: blocks of time are held out instead of tracks")
-    rows = [[row.name, show(row.training), show(row.held_out), str(row)] for row in found.rows]
+    rows = [
+        [row.name, show(row.training), show(row.held_out), row.change_text] for row in found.rows
+    ]
     print_table(
-        ["RMS (m)", "training", "held out", "tuned against it (95 %)"],
+        ["", "training", "held out", "tuned against it (95 %)"],
         rows,
-        title=f"RMS of {found.objective}",
+        title=found.objective,
     )
     say()
     numbers = [

@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.recording import Recording, Track, read_tracks
 from fuzzytrack.recordings.ragged import batches
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import streams, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.yamltree import suggestion
 
 __all__ = ["LEAST_PLOTS", "Batch", "TuningData", "TuningTrack", "recorded", "simulated"]
 
@@ -229,7 +231,8 @@ def recorded(
         Standard deviation of all plots (m).
     truth : str or path, optional
         File of true positions with the same columns and identities; between its times they are
-        interpolated linearly, and outside of them plots are not scored.
+        interpolated linearly, and outside of them plots are not scored. If there is no such file,
+        columns of the file of plots, with commas between them.
     time, id, axes, sort
         As for `fuzzytrack.io.read_tracks`.
 
@@ -244,8 +247,10 @@ def recorded(
         raise ValueError(f"sigma must be > 0, got {sigma:g}")
     recording = read_tracks(path, time=time, id=id, axes=axes, sort=sort)
     true: Recording | None = None
-    if truth is not None:
+    if truth is not None and os.path.exists(truth):
         true = read_tracks(truth, time=time, id=id, axes=axes, sort=sort)
+    elif truth is not None:
+        true = read_tracks(path, time=time, id=id, axes=_columns(path, truth), sort=sort)
     tracks = tuple(
         TuningTrack(
             track.id,
@@ -257,6 +262,20 @@ def recorded(
         for track in recording.tracks
     )
     return TuningData(os.fspath(path), tracks)
+
+
+def _columns(path: str | os.PathLike[str], truth: str | os.PathLike[str]) -> list[str]:
+    """Columns of true positions in the file of plots."""
+    names = [name.strip() for name in os.fspath(truth).split(",")]
+    with open_table(os.fspath(path)) as source:
+        there = tuple(source.types)
+    for name in names:
+        if name not in there:
+            raise DataError(
+                f"truth: there is no file {os.fspath(truth)}, and {os.fspath(path)} has no column "
+                f"{name!r}{suggestion(name, there)}"
+            )
+    return names
 
 
 def _truth(track: Track, true: Recording) -> Array:

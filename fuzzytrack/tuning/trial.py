@@ -1,4 +1,4 @@
-"""Trials: trackers run on all tracks, and their errors."""
+"""Trials: trackers run on all tracks."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.lane_tracker import LaneTracker, learn_code, sharing_code
+from fuzzytrack.trackers.lane_tracker import learn_code, sharing_code
 from fuzzytrack.tuning.candidates import Candidates
+from fuzzytrack.tuning.criteria import Criterion
 from fuzzytrack.tuning.data import TuningData
 from fuzzytrack.tuning.folds import Folds
 from fuzzytrack.tuning.parameters import Numbers
@@ -34,19 +35,21 @@ class Trials:
     ----------
     data : TuningData
     folds : Folds
+    criterion : Criterion
     compiled : bool
         Whether to run compiled, all trackers of a kind through the same code.
     """
 
     data: TuningData
     folds: Folds
+    criterion: Criterion
     compiled: bool
 
     def __repr__(self) -> str:
         return summary(self, "data", "compiled")
 
-    def errors(self, candidates: Candidates, trials: Sequence[Numbers]) -> list[Array]:
-        """Sums of squared errors (m²) of the trackers with some numbers.
+    def sums(self, candidates: Candidates, trials: Sequence[Numbers]) -> list[Array]:
+        """Sums of the criterion over the plots of each unit, of the trackers with some numbers.
 
         Parameters
         ----------
@@ -61,7 +64,7 @@ class Trials:
         """
         made = [_tracker(candidates, numbers) for numbers in trials]
         if not self.compiled:
-            return [self._errors(tracker) for tracker in made]
+            return [self._sums(tracker) for tracker in made]
         code, n_axes, found = _shared_code(candidates.title), self.data.n_axes, []
         if code.is_empty:
             # One code for all that differs between these; a later surprise is compiled anew.
@@ -69,35 +72,24 @@ class Trials:
                 learn_code(tracker, n_axes, code)
         for tracker in made:
             with sharing_code(tracker, n_axes, code):
-                found.append(self._errors(tracker))
+                found.append(self._sums(tracker))
         return found
 
     def losses(self, candidates: Candidates, trials: Sequence[Numbers], held: int) -> list[float]:
-        """Logarithms of the RMS errors on all units but those of a fold; all of them for -1."""
+        """Losses of trackers on all units but those of a fold; on all of them for -1."""
         trained = self.folds.fold != held
-        plots = self.folds.plots[trained].sum()
+        plots = int(self.folds.plots[trained].sum())
         found = []
-        for sums in self.errors(candidates, trials):
-            mean = sums[trained].sum() / plots
-            found.append(0.5 * math.log(mean) if 0 < mean < math.inf else REFUSED)
+        for sums in self.sums(candidates, trials):
+            loss = self.criterion.loss(float(sums[trained].sum()), plots)
+            found.append(loss if math.isfinite(loss) else REFUSED)
         return found
 
-    def _errors(self, tracker: Tracker | None) -> Array:
+    def _sums(self, tracker: Tracker | None) -> Array:
         if tracker is None:
             return np.full(len(self.folds.fold), math.inf)
-        squares = []
-        for batch in self.data.batches:
-            if isinstance(tracker, LaneTracker):
-                # In one thread, since the code is shared; other processors run other trials.
-                result = tracker.run(
-                    batch.time, batch.plots, batch.sigma, keep=("predicted",), threads=1
-                )
-            else:
-                result = tracker.run(batch.time, batch.plots, batch.sigma)
-            with np.errstate(over="ignore", invalid="ignore"):
-                error = ((result.predicted - batch.target) ** 2).sum(axis=-1)
-            squares.append(np.where(np.isfinite(error), error, math.inf))
-        return self.folds.by_unit(squares)
+        terms = [self.criterion.terms(tracker, batch) for batch in self.data.batches]
+        return self.folds.by_unit(terms)
 
 
 def _tracker(candidates: Candidates, numbers: Numbers) -> Tracker | None:

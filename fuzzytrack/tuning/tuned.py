@@ -2,36 +2,36 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from fuzzytrack.arrays import Array
 from fuzzytrack.io.files import whole_file
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.tuning.criteria import Change
 
-__all__ = ["Row", "Tuned", "change", "with_head"]
+__all__ = ["Row", "Tuned", "with_head"]
 
 
 @dataclass(frozen=True)
 class Row:
-    """Errors of one tracker.
+    """One tracker.
 
     Attributes
     ----------
     name : str
     training : float
-        RMS error (m) on the data that it was tuned on, over all folds.
+        Value of the criterion on the data that it was tuned on, over all folds.
     held_out : float
-        RMS error (m) on the data that it was not tuned on.
+        The same on the data that it was not tuned on.
     change : tuple of float, or None
-        Relative change of the held-out error from this tracker to the tuned one, and the ends of
-        its 95 % interval; None for the tuned one itself.
+        Change of the held-out value from this tracker to the tuned one, and the ends of its 95 %
+        interval: relative for an RMS error, a difference for a likelihood. None for the tuned one
+        itself.
+    change_text : str
+        The same as text; empty for the tuned one.
     numbers : dict of str to float
         Its free numbers, tuned on all data.
     """
@@ -39,19 +39,14 @@ class Row:
     name: str
     training: float
     held_out: float
-    change: tuple[float, float, float] | None
+    change: Change | None
+    change_text: str
     numbers: dict[str, float]
 
     @property
     def is_worse(self) -> bool:
         """Whether the tuned tracker is better, with an interval that excludes 0."""
         return self.change is not None and self.change[2] < 0
-
-    def __str__(self) -> str:
-        if self.change is None:
-            return ""
-        middle, low, high = (100 * x for x in self.change)
-        return f"{middle:+.1f} % ({low:+.1f} to {high:+.1f})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,18 +107,18 @@ class Tuned:
     def verdict(self) -> str:
         """In words: whether tuning is worth it, and what is as good."""
         if not self.worth_it:
-            return f"not worth it: held-out change against the start {self.rows[0]}"
-        found = f"worth it: held-out change against the start {self.rows[0]}"
+            return f"not worth it: held-out change against the start {self.rows[0].change_text}"
+        found = f"worth it: held-out change against the start {self.rows[0].change_text}"
         as_good = [row.name for row in self.rows[1:-1] if not row.is_worse]
         return f"{found}; but not better than {' or '.join(as_good)}" if as_good else found
 
     @property
     def report(self) -> str:
-        """Table of errors, and the verdict."""
+        """Table of training and held-out values, and the verdict."""
         heads = ("", "training", "held out", "tuned against it (95 %)")
         table = [heads]
         for row in self.rows:
-            table.append((row.name, f"{row.training:.5g}", f"{row.held_out:.5g}", str(row)))
+            table.append((row.name, f"{row.training:.5g}", f"{row.held_out:.5g}", row.change_text))
         widths = [max(len(line[k]) for line in table) for k in range(len(heads))]
         lines = [
             "  ".join(
@@ -132,7 +127,7 @@ class Tuned:
             ).rstrip()
             for line in table
         ]
-        return "\n".join([f"RMS of {self.objective}", *lines, self.verdict])
+        return "\n".join([self.objective, *lines, self.verdict])
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the tuned rule base to a file, whole or not at all.
@@ -182,39 +177,6 @@ class Tuned:
             "worth_it": self.worth_it,
             "verdict": self.verdict,
         }
-
-
-def change(tuned: Array, other: Array) -> tuple[float, float, float]:
-    """Relative change of an RMS error, with a 95 % interval.
-
-    Parameters
-    ----------
-    tuned, other : ndarray, shape (n_units,)
-        Sums of squared errors of both in each unit.
-
-    Returns
-    -------
-    change, low, high : float
-        Infinite or NaN where an error is not finite.
-
-    Notes
-    -----
-    Jackknife over units of the logarithm of the ratio, with Student's t. Both saw the same plots,
-    so the interval is that of paired differences.
-    """
-    from scipy.stats import t
-
-    count = len(tuned)
-    if not (np.isfinite(tuned).all() and np.isfinite(other).all()):
-        whole = -1.0 if np.isfinite(tuned).all() else math.inf
-        return whole, whole, whole
-    # Without each of the units in turn.
-    ratios = 0.5 * np.log((tuned.sum() - tuned) / (other.sum() - other))
-    ratio = 0.5 * math.log(tuned.sum() / other.sum())
-    spread = math.sqrt((count - 1) / count * float(((ratios - ratios.mean()) ** 2).sum()))
-    reach = float(t.ppf(0.975, count - 1)) * spread
-    middle, low, high = (math.expm1(ratio + part) for part in (0.0, -reach, reach))
-    return middle, low, high
 
 
 def with_head(text: str, lines: Sequence[str]) -> str:

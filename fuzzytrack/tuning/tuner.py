@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import hashlib
-import json
 import os
 from collections.abc import Collection, Sequence
 from concurrent.futures import Executor
@@ -18,19 +17,20 @@ from fuzzytrack import specs
 from fuzzytrack.fuzzy.loading import rulebase_path, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.saving import dumps_rulebase
-from fuzzytrack.io.files import whole_file
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
 from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.tuning.candidates import Candidates
+from fuzzytrack.tuning.criteria import CRITERIA, Criterion, Likelihood
 from fuzzytrack.tuning.data import TuningData, recorded, simulated
 from fuzzytrack.tuning.folds import make_folds
+from fuzzytrack.tuning.journal import Journal
 from fuzzytrack.tuning.parameters import Numbers
 from fuzzytrack.tuning.rulebase_numbers import RuleBaseNumbers, rulebase_numbers
 from fuzzytrack.tuning.search import Search
 from fuzzytrack.tuning.specifications import specification
 from fuzzytrack.tuning.trial import Trials
-from fuzzytrack.tuning.tuned import Row, Tuned, change, with_head
+from fuzzytrack.tuning.tuned import Row, Tuned, with_head
 from fuzzytrack.version import __version__
 
 __all__ = ["tune"]
@@ -58,6 +58,7 @@ def tune(
     seed: int = 0,
     trials: int | None = None,
     folds: int = 5,
+    criterion: str = "rms",
     executor: Executor | None = None,
     state: str | os.PathLike[str] | None = None,
     resume: bool = False,
@@ -97,6 +98,9 @@ def tune(
     folds : int
         Number of folds. Each holds out some tracks or, of fewer than three tracks, some blocks of
         time.
+    criterion : {"rms", "likelihood"}
+        What is minimized: the RMS error of predictions, or the negative logarithm of the likelihood
+        of the plots, for trackers that keep the variance of their innovations.
     executor : concurrent.futures.Executor, optional
         Runs the trials; in this process unless given.
     state : str or path, optional
@@ -115,33 +119,34 @@ def tune(
     DataError, RuleBaseError
         If the data hold too few plots, or the rule base cannot be read or schedule gains.
     ValueError
-        If there is no such tracker or number, nothing is free or has an effect, the tracker needs
-        `sigma` and there is none, the package ``cmaes`` is missing, or `state` is of another
-        search.
+        If there is no such tracker, number or criterion, nothing is free or has an effect, the
+        tracker needs `sigma` and there is none, the package ``cmaes`` is missing, or `state` is of
+        another search.
     OSError
         If a file cannot be read or written.
 
     Notes
     -----
     On every fold, and on all data, the numbers are searched by CMA-ES (Hansen 2016) for the least
-    RMS error of predictions at the plots from the third of a track on, and so are those of two
-    rivals: a fixed pair of gains, and a Kalman filter of nearly constant velocity. What is returned
-    was tuned on all data; held-out errors are those of trackers that did not see them.
+    value at the plots from the third of a track on, and so are those of two rivals: a fixed pair of
+    gains (which has no likelihood), and a Kalman filter of nearly constant velocity. What is
+    returned was tuned on all data; held-out errors are those of trackers that did not see them.
     """
+    judged = _criterion(criterion)
     found = _data(data, sigma, truth, time, id, axes, sort, runs, seed)
     candidates = _candidates(tracker, free, found)
     divided = make_folds(found, folds, seed)
-    families = [candidates, *_rivals(candidates, found)]
+    families = [candidates, *_rivals(candidates, found, judged)]
     planned = sum(_planned(family, trials) for family in families) * (divided.number + 1)
     compiled = planned * found.coordinates > _COMPILE_ABOVE
-    run = Trials(found, divided, compiled)
-    _check_sigma(candidates, found)
+    run = Trials(found, divided, judged, compiled)
+    _check_start(candidates, run)
     plans = tuple(
         _Plan(number, held)
         for held in (*range(divided.number), _ALL)
         for number in range(len(families))
     )
-    journal = _Journal.open(state, _job(found, families, plans, trials, seed), resume)
+    journal = Journal.open(state, _job(run, families, plans, trials, seed), resume)
     (candidates, unused), *rivals = (_with_effect(family, run) for family in families)
     families = [candidates, *(rival for rival, _ in rivals)]
     searches = [
@@ -163,7 +168,7 @@ def tune(
         unused=unused,
         rows=rows,
         data=found.name,
-        objective="predictions, against the truth" if found.has_truth else "innovations",
+        objective=_objective(run),
         folds=divided.number,
         units=divided.kind,
         plots=int(divided.plots.sum()),
@@ -210,24 +215,50 @@ def _candidates(
     return specification(tracker, free, data.noise / data.interval**2)
 
 
-def _rivals(candidates: Candidates, data: TuningData) -> list[Candidates]:
+def _rivals(candidates: Candidates, data: TuningData, criterion: Criterion) -> list[Candidates]:
     """The best fixed pair and the Kalman filter, unless they are what is tuned."""
-    unit = data.noise / data.interval**2
-    kalman = "kalman-cv" if data.has_sigma else f"kalman-cv:sigma_w={data.noise:.6g}"
-    named = {"best fixed pair": "fixed", "Kalman filter (CV)": kalman}
+    unit, likely = data.noise / data.interval**2, isinstance(criterion, Likelihood)
+    kalman, free = "kalman-cv", ["sigma_v"]
+    if not data.has_sigma:
+        kalman += f":sigma_w={data.noise:.6g}"
+        # Errors depend on the ratio of both only.
+        free += ["sigma_w"] * likely
+    rivals = {"Kalman filter (CV)": specification(kalman, free, unit)}
+    if not likely:
+        rivals = {"best fixed pair": specification("fixed", None, unit), **rivals}
     return [
-        replace(specification(text, None, unit), title=title)
-        for title, text in named.items()
-        if candidates.title.partition(":")[0] != text.partition(":")[0]
+        replace(rival, title=title)
+        for title, rival in rivals.items()
+        if candidates.title.partition(":")[0] != rival.name
     ]
 
 
-def _check_sigma(candidates: Candidates, data: TuningData) -> None:
+def _criterion(name: str) -> Criterion:
+    if name not in CRITERIA:
+        raise ValueError(f"criterion: unknown {name!r}; one of {', '.join(CRITERIA)}")
+    return CRITERIA[name]
+
+
+def _objective(run: Trials) -> str:
+    """What is minimized, in words."""
+    if isinstance(run.criterion, Likelihood):
+        return "negative log likelihood of the plots"
+    return f"RMS of {'predictions, against the truth' if run.data.has_truth else 'innovations'}"
+
+
+def _check_start(candidates: Candidates, run: Trials) -> None:
+    """Raise ValueError if the tracker where the search begins cannot be judged."""
     tracker: Any = candidates.tracker(candidates.space.start)
-    if getattr(tracker, "needs_sigma", False) and not data.has_sigma:
+    if getattr(tracker, "needs_sigma", False) and not run.data.has_sigma:
         raise ValueError(
             f"sigma: {candidates.title} needs the standard deviation of the plots, which the data "
             "do not have"
+        )
+    (sums,) = run.sums(candidates, [candidates.space.start])
+    if isinstance(run.criterion, Likelihood) and not np.isfinite(sums).all():
+        raise ValueError(
+            f"criterion: {candidates.title} does not keep the variance of its innovations, which "
+            "a likelihood needs; use rms"
         )
 
 
@@ -240,7 +271,7 @@ def _with_effect(candidates: Candidates, run: Trials) -> tuple[Candidates, tuple
             places.append([step * (j == k) for j in range(len(space.parameters))])
     bounds = space.bounds
     trials = [space.numbers(np.clip(place, bounds[:, 0], bounds[:, 1])) for place in places]
-    start, *moved = run.errors(candidates, trials)
+    start, *moved = run.sums(candidates, trials)
     used = [
         k
         for k in range(len(space.parameters))
@@ -292,7 +323,7 @@ def _search(
     searches: Sequence[Search],
     work: _Work,
     executor: Executor | None,
-    journal: _Journal,
+    journal: Journal,
     progress: Progress | None,
 ) -> None:
     """Do all searches, a generation of each at a time."""
@@ -314,53 +345,8 @@ def _share(searches: Sequence[Search]) -> float:
     return done / sum(search.trials for search in searches)
 
 
-@dataclass(frozen=True, eq=False)
-class _Journal:
-    """Losses of all searches in a file, with all that they depend on."""
-
-    path: Path | None
-    job: dict[str, str]
-    losses: list[list[float]]
-
-    @classmethod
-    def open(
-        cls, path: str | os.PathLike[str] | None, job: dict[str, str], resume: bool
-    ) -> _Journal:
-        if path is None:
-            if resume:
-                raise ValueError("resume: needs the state file of the search to continue")
-            return cls(None, job, [])
-        place = Path(path)
-        if not place.exists():
-            return cls(place, job, [])
-        if not resume:
-            raise ValueError(
-                f"state: {place} holds an earlier search; resume it or choose another file"
-            )
-        try:
-            found = json.loads(place.read_text(encoding="utf-8"))
-            then, losses = (
-                dict(found["job"]),
-                [[float(x) for x in each] for each in found["losses"]],
-            )
-        except (ValueError, KeyError, TypeError) as error:
-            raise ValueError(f"resume: {place} holds no search: {error}") from error
-        for key, now in job.items():
-            if then.get(key) != now:
-                raise ValueError(
-                    f"resume: {key} is {now}, in the search of {place} it was {then.get(key)}; "
-                    "give the same or choose another file"
-                )
-        return cls(place, job, losses)
-
-    def write(self, losses: list[list[float]]) -> None:
-        if self.path is not None:
-            with whole_file(self.path) as draft:
-                draft.write_text(json.dumps({"job": self.job, "losses": losses}), encoding="utf-8")
-
-
 def _job(
-    data: TuningData,
+    run: Trials,
     families: Sequence[Candidates],
     plans: Sequence[_Plan],
     trials: int | None,
@@ -368,14 +354,15 @@ def _job(
 ) -> dict[str, str]:
     """Everything that the losses depend on, as text."""
     digest = hashlib.sha256()
-    for track in data.tracks:
+    for track in run.data.tracks:
         for values in (track.time, track.plots, track.truth, track.sigma):
             digest.update(b"-" if values is None else np.ascontiguousarray(values).tobytes())
     start = families[0].space.start
     return {
         "fuzzytrack": __version__,
         "seed": str(seed),
-        "data": f"{data.name} {digest.hexdigest()[:16]}",
+        "criterion": type(run.criterion).__name__,
+        "data": f"{run.data.name} {digest.hexdigest()[:16]}",
         "tracker": hashlib.sha256(families[0].text(start).encode()).hexdigest()[:16],
         "free numbers": ", ".join(p.name for p in families[0].space.parameters),
         "searches": str(len(plans)),
@@ -399,22 +386,22 @@ def _rows(
         tried = [
             best[_Plan(number, k)] if is_tuned else family.space.start for k in range(folds.number)
         ]
-        sums = run.errors(family, tried)
+        sums = run.sums(family, tried)
         held[name] = np.array([sums[k][unit] for unit, k in enumerate(folds.fold)])
         inside = [float(s[folds.fold != k].sum()) for k, s in enumerate(sums)]
         plots = [int(folds.plots[folds.fold != k].sum()) for k in range(folds.number)]
-        training[name] = (sum(inside) / sum(plots)) ** 0.5
-    total, start = int(folds.plots.sum()), families[0].space.start
-    return tuple(
-        Row(
-            name,
-            training[name],
-            float(held[name].sum() / total) ** 0.5,
-            None if name == "tuned" else change(held["tuned"], held[name]),
-            _named(families[number], best[_Plan(number, _ALL)] if is_tuned else start),
-        )
-        for name, number, is_tuned in named
-    )
+        training[name] = run.criterion.value(sum(inside), sum(plots))
+    rows = []
+    for name, number, is_tuned in named:
+        value = run.criterion.value(float(held[name].sum()), int(folds.plots.sum()))
+        change = run.criterion.change(held["tuned"], held[name], folds.plots)
+        last = name == "tuned"
+        text = "" if last else run.criterion.written(change)
+        family = families[number]
+        numbers = best[_Plan(number, _ALL)] if is_tuned else family.space.start
+        own = _named(family, numbers)
+        rows.append(Row(name, training[name], value, None if last else change, text, own))
+    return tuple(rows)
 
 
 def _named(family: Candidates, numbers: Numbers) -> dict[str, float]:
@@ -426,7 +413,7 @@ def _head(tuned: Tuned) -> list[str]:
     return [
         f"Tuned on {tuned.data} with seed {tuned.seed} by fuzzytrack {__version__}, "
         f"{datetime.date.today().isoformat()}.",
-        f"Objective: RMS of {tuned.objective}, {tuned.plots} plots; {tuned.folds} folds by "
-        f"{tuned.units}.",
-        f"Held-out error against the start: {tuned.rows[0]}; free: {', '.join(tuned.numbers)}.",
+        f"Objective: {tuned.objective}, {tuned.plots} plots; {tuned.folds} folds by {tuned.units}.",
+        f"Held-out change against the start: {tuned.rows[0].change_text}; "
+        f"free: {', '.join(tuned.numbers)}.",
     ]

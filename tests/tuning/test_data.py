@@ -114,6 +114,11 @@ def test_recorded_plots_with_and_without_truth(tmp_path):
     truth.write_text("t,id,x,y\n10,a,21,1\n")
     with pytest.raises(DataError, match=r"truth\.csv: has no track 'b', for which there are plots"):
         recorded(plots, id="id", truth=truth)
+    # The truth can be in columns of the same file.
+    columns = recorded(plots, id="id", truth="y, x")
+    np.testing.assert_array_equal(columns.tracks[1].truth, columns.tracks[1].plots[:, ::-1])
+    with pytest.raises(DataError, match=r"truth: there is no file yy,x, and .* no column 'yy'"):
+        recorded(plots, id="id", truth="yy,x")
     truth.write_text("t,id,x,y,z\n10,a,21,1,0\n10,b,21,1,0\n")
     with pytest.raises(DataError, match=r"truth\.csv: has 3 axes, the plots have 2"):
         recorded(plots, id="id", truth=truth)

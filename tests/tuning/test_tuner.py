@@ -2,6 +2,7 @@ import json
 import math
 import pickle
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +12,9 @@ from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_pat
 from fuzzytrack.gains import kalata
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.tuning import TuningData, TuningTrack, tuner
+from fuzzytrack.tuning.criteria import CRITERIA, RmsError
 from fuzzytrack.tuning.trial import REFUSED, Trials
-from fuzzytrack.tuning.tuned import change, with_head
+from fuzzytrack.tuning.tuned import with_head
 
 QUICK = {"runs": 6, "trials": 8, "folds": 2, "seed": 3}
 LONGER = {**QUICK, "trials": 20}
@@ -73,7 +75,7 @@ def test_a_rule_base_is_tuned_and_loads_again_to_the_tuned_tracker(tmp_path):
     assert {"universe:", "Z:", "S:", "M:", "L:", "scheduler:"} >= set(differ) >= {"scheduler:"}
     assert head[0].startswith("# Tuned on mixed with seed 3 by fuzzytrack ")
     assert head[1].startswith("# Objective: RMS of predictions, against the truth, ")
-    assert f"{found.rows[0]}" in head[2]
+    assert found.rows[0].change_text in head[2]
     names = ["start", "best fixed pair", "Kalman filter (CV)", "tuned"]
     assert [row.name for row in found.rows] == names
     assert found.rows[-1].training <= found.rows[0].training
@@ -108,13 +110,15 @@ def test_errors_of_compiled_trials_are_the_same_to_the_bit():
     candidates = tuner._candidates("fixed", None, data)
     trials = [(0.5, 0.2), (0.7, 0.3), (1.0, 3.0), (0.31, 0.04)]
     plain, compiled = (
-        Trials(data, tuner.make_folds(data, 2, 0), compiled).errors(candidates, trials)
+        Trials(data, tuner.make_folds(data, 2, 0), RmsError(), compiled).sums(candidates, trials)
         for compiled in (False, True)
     )
     np.testing.assert_array_equal(compiled, plain)
     # Another process has all that it needs.
-    again = pickle.loads(pickle.dumps(Trials(data, tuner.make_folds(data, 2, 0), False)))
-    np.testing.assert_array_equal(again.errors(candidates, trials), plain)
+    again = pickle.loads(
+        pickle.dumps(Trials(data, tuner.make_folds(data, 2, 0), RmsError(), False))
+    )
+    np.testing.assert_array_equal(again.sums(candidates, trials), plain)
 
 
 def test_a_search_that_is_interrupted_goes_on_to_the_same_end(tmp_path):
@@ -166,7 +170,7 @@ def test_recorded_plots_without_truth_are_compared_with_themselves(tmp_path):
     path.write_text("t,x,y\n" + "\n".join(f"{k},{x},{y}" for k, (x, y) in enumerate(many)))
     found = ft.tune(path, "fixed", trials=8, folds=2)
     assert found.units == "blocks of time"
-    assert found.objective == "innovations"
+    assert found.objective == "RMS of innovations"
     # Without a sigma, the Kalman filter has an estimate of it.
     assert math.isfinite(found.rows[1].held_out)
     with pytest.raises(ValueError, match="sigma: omega-schedule needs the standard deviation of"):
@@ -179,7 +183,7 @@ def test_recorded_plots_without_truth_are_compared_with_themselves(tmp_path):
 
 def test_numbers_that_make_no_tracker_are_refused():
     data = random_walk(4, 70, 0.5)
-    run = Trials(data, tuner.make_folds(data, 2, 0), compiled=False)
+    run = Trials(data, tuner.make_folds(data, 2, 0), RmsError(), compiled=False)
     candidates = tuner._candidates("fixed", None, data)
     good, bad = run.losses(candidates, [(0.5, 0.2), (1.0, 3.0)], -1)
     assert bad == REFUSED > good
@@ -190,14 +194,21 @@ def test_the_change_is_that_of_paired_errors():
     rng = np.random.default_rng(2)
     other = rng.gamma(3.0, 1.0, 400)
     tuned = 0.81 * other * np.exp(rng.normal(0, 0.1, 400))
-    middle, low, high = change(tuned, other)
+    plots = np.full(400, 7)
+    middle, low, high = RmsError().change(tuned, other, plots)
     assert middle == pytest.approx(math.sqrt(tuned.sum() / other.sum()) - 1, rel=1e-12)
     # Brute force: the bootstrap.
     draws = rng.integers(0, 400, (4000, 400))
     ratios = np.sqrt(tuned[draws].sum(axis=1) / other[draws].sum(axis=1)) - 1
     assert (low, high) == pytest.approx(tuple(np.quantile(ratios, [0.025, 0.975])), abs=0.001)
-    assert change(tuned, np.full(400, np.inf)) == (-1.0, -1.0, -1.0)
-    assert change(np.full(400, np.inf), other)[0] == math.inf
+    nothing = np.full(400, np.inf)
+    for name, least in (("rms", -1.0), ("likelihood", -math.inf)):
+        assert CRITERIA[name].change(tuned, nothing, plots) == (least, least, least)
+        assert CRITERIA[name].change(nothing, other, plots)[0] == math.inf
+    middle, low, high = CRITERIA["likelihood"].change(tuned, other, plots)
+    means = (tuned - other)[draws].mean(axis=1) / 7
+    assert middle == pytest.approx((tuned - other).mean() / 7)
+    assert (low, high) == pytest.approx(tuple(np.quantile(means, [0.025, 0.975])), abs=0.002)
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
@@ -209,3 +220,33 @@ def test_comments_come_after_the_one_that_names_the_schema(end):
         [head, end, *comments, f"a: 1{end}"]
     )
     assert with_head(f"\ufeffa: 1{end}", lines) == "".join(["\ufeff", *comments, f"a: 1{end}"])
+
+
+def test_the_likelihood_finds_the_noise_of_plots_and_target():
+    data = random_walk(5, 60, 0.6)
+    bare = TuningData("bare", tuple(replace(t, truth=None, sigma=None) for t in data.tracks))
+    found = ft.tune(
+        bare, "kalman-cv:sigma_w=1.7:sigma_v=1", free=["sigma_v", "sigma_w"],
+        criterion="likelihood", trials=36, folds=2,
+    )  # fmt: skip
+    # An RMS error could only tell their ratio.
+    assert found.numbers["sigma_w"] == pytest.approx(1.0, rel=0.15)
+    assert found.numbers["sigma_v"] == pytest.approx(0.6, rel=0.35)
+    assert found.objective == "negative log likelihood of the plots"
+    assert [row.name for row in found.rows] == ["start", "tuned"]
+    # The sum over plots, by hand.
+    tracker = make_tracker("kalman-cv:sigma_w=1.7:sigma_v=1")
+    total = 0.0
+    for track in bare.tracks:
+        state = tracker.run(track.time[:2], track.plots[:2]).state
+        for t, z in zip(track.time[2:], track.plots[2:], strict=True):
+            ahead = tracker.predict(state, t)
+            s = float(ahead.innovation_variance[0])
+            e = float(z[0] - ahead.position[0])
+            total += 0.5 * (e * e / s + math.log(2 * math.pi * s))
+            state = tracker.step(state, z, t)
+    assert found.rows[0].held_out == pytest.approx(total / (5 * 58), rel=1e-9)
+    with pytest.raises(ValueError, match="criterion: fixed does not keep the variance of its"):
+        ft.tune(bare, "fixed", criterion="likelihood")
+    with pytest.raises(ValueError, match="criterion: unknown 'mse'; one of rms, likelihood"):
+        ft.tune(bare, "fixed", criterion="mse")
