@@ -8,7 +8,7 @@ from fuzzytrack.cli import tune as tuning
 from fuzzytrack.fuzzy.loading import rulebase_path
 from fuzzytrack.trackers.catalog import make_tracker
 
-QUICK = ("--runs", 6, "--trials", 6, "--folds", 2)
+QUICK = ("--runs", 4, "--trials", 6, "--folds", 2)
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from fuzzytrack.tuning.criteria import CRITERIA, RmsError
 from fuzzytrack.tuning.trial import REFUSED, Trials
 from fuzzytrack.tuning.tuned import with_head
 
-QUICK = {"runs": 6, "trials": 8, "folds": 2, "seed": 3}
+QUICK = {"runs": 4, "trials": 8, "folds": 2, "seed": 3}
 LONGER = {**QUICK, "trials": 20}
 
 
@@ -36,8 +36,9 @@ def numbers(found):
     return found.to_json_dict()
 
 
+@pytest.mark.untraced
 def test_fixed_gains_come_near_those_of_the_steady_kalman_filter():
-    found = ft.tune(random_walk(12, 100, 0.6), "fixed", trials=40, folds=2)
+    found = ft.tune(random_walk(10, 100, 0.6), "fixed", trials=36, folds=2)
     alpha, beta = kalata(0.6)
     assert found.numbers["alpha"] == pytest.approx(float(alpha), rel=0.1)
     assert found.numbers["beta"] == pytest.approx(float(beta), rel=0.2)
@@ -121,6 +122,7 @@ def test_errors_of_compiled_trials_are_the_same_to_the_bit():
     np.testing.assert_array_equal(again.sums(candidates, trials), plain)
 
 
+@pytest.mark.untraced
 def test_a_search_that_is_interrupted_goes_on_to_the_same_end(tmp_path):
     state, shares = tmp_path / "search.json", []
     whole = ft.tune("mixed", "fixed", progress=shares.append, **LONGER)
@@ -222,6 +224,7 @@ def test_comments_come_after_the_one_that_names_the_schema(end):
     assert with_head(f"\ufeffa: 1{end}", lines) == "".join(["\ufeff", *comments, f"a: 1{end}"])
 
 
+@pytest.mark.untraced
 def test_the_likelihood_finds_the_noise_of_plots_and_target():
     data = random_walk(5, 60, 0.6)
     bare = TuningData("bare", tuple(replace(t, truth=None, sigma=None) for t in data.tracks))
