@@ -15,7 +15,7 @@ from benchmarks.timing import ratio, take_turns
 from benchmarks.work import difference, times_and_plots, warm
 from fuzzytrack.schedulers import KalmanCA, KalmanCV
 from fuzzytrack.schedulers.innovation import InnovationScheduler
-from fuzzytrack.trackers.imm import InteractingModels
+from fuzzytrack.trackers.imm import InteractingPair
 
 __all__ = ["acceleration", "imm", "kim_lee", "simd", "velocity"]
 
@@ -61,7 +61,7 @@ def kim_lee(scale: Scale) -> list[Row]:
 
 def imm(scale: Scale) -> list[Row]:
     """Two models of nearly constant velocity."""
-    tracker = InteractingModels(QUIET, AGILE, *STAY, maneuver="cv", maneuver_start=1 / 3, **KNOWN)
+    tracker = InteractingPair(QUIET, AGILE, *STAY, maneuver="cv", maneuver_start=1 / 3, **KNOWN)
 
     def theirs() -> peers.Track:
         models = peers.Model(2, QUIET), peers.Model(2, AGILE)

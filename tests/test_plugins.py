@@ -163,7 +163,7 @@ def test_names_are_shared_by_all_that_makes_a_tracker():
             made, listed = [make_tracker(spec) for spec in specs], catalog()
         assert made[0].scheduler == FixedGains(0.4, 0.1)
         assert made[1].scheduler.rules.name == "stiffness-damping"
-        assert type(made[2]).__name__ == "InteractingModels"
+        assert type(made[2]).__name__ == "InteractingPair"
         assert made[3].scheduler == FixedGains(0.5, 0.2)
         assert sorted(str(warning.message) for warning in caught) == [
             "scheduler 'imm' of test_plugins has the name of a tracker; it is skipped",

@@ -41,7 +41,7 @@ from fuzzytrack.simulation.sensor_field import canonical_field
 from fuzzytrack.testbed.comparison import compare
 from fuzzytrack.testbed.metrics import PairedDifference
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch
+from fuzzytrack.trackers import InteractingPair, ParallelBank, WindowSearch
 from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.track_store import TrackStore
 from fuzzytrack.tuning import VARIANTS, rank
@@ -77,7 +77,7 @@ CASES = {
     ),
     'ParallelBank(highest=0.8, selection="last")': ParallelBank(0.1, 0.8, selection="last"),
     "WindowSearch()": WindowSearch(),
-    'InteractingModels(0.1, 2.0, maneuver="cv", joint=False)': InteractingModels(
+    'InteractingPair(0.1, 2.0, maneuver="cv", joint=False)': InteractingPair(
         0.1, 2, maneuver="cv", joint=False
     ),
     'Fuzzification(shape="gaussian", width=0.5)': ft.Fuzzification("gaussian", 0.5),

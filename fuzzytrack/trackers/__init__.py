@@ -6,7 +6,10 @@ from fuzzytrack.lanes.start import single_axis_step
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker, trackers
-from fuzzytrack.trackers.imm import InteractingModels
+from fuzzytrack.trackers.imm import InteractingPair
+from fuzzytrack.trackers.imm_three import three_model_imm
+from fuzzytrack.trackers.imm_two import two_model_imm
+from fuzzytrack.trackers.interacting_models import InteractingModels, MotionModel
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult
@@ -18,8 +21,10 @@ __all__ = [
     "AlphaBetaTracker",
     "Gains",
     "InteractingModels",
+    "InteractingPair",
     "LaneProgram",
     "LaneTracker",
+    "MotionModel",
     "ParallelBank",
     "Prediction",
     "Rows",
@@ -29,5 +34,7 @@ __all__ = [
     "Tracker",
     "WindowSearch",
     "single_axis_step",
+    "three_model_imm",
     "trackers",
+    "two_model_imm",
 ]

@@ -24,7 +24,7 @@ from fuzzytrack.trackers.imm_step import (
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.state import TrackState, check_rows
 
-__all__ = ["MANEUVERS", "InteractingModels"]
+__all__ = ["MANEUVERS", "InteractingPair"]
 
 
 MANEUVERS = ("ca", "cv")
@@ -35,7 +35,7 @@ _FLOOR = 1e-12
 
 @trackers.register("imm")
 @dataclass(frozen=True, repr=False)
-class InteractingModels(LaneTracker):
+class InteractingPair(LaneTracker):
     """Two Kalman filters, for a quiet and for a maneuvering target, and their probabilities.
 
     The quiet model is `fuzzytrack.schedulers.KalmanCV`, the maneuvering one the same with more
@@ -99,8 +99,8 @@ class InteractingModels(LaneTracker):
 
     Examples
     --------
-    >>> from fuzzytrack.trackers.imm import InteractingModels
-    >>> tracker = InteractingModels(0.1, 2.0, sigma_w=1.0)
+    >>> from fuzzytrack.trackers.imm import InteractingPair
+    >>> tracker = InteractingPair(0.1, 2.0, sigma_w=1.0)
     >>> result = tracker.run([0, 1, 2, 3, 4, 5], [0, 10, 20, 30, 43, 59])
     >>> result.predicted.round(2)
     array([  nan,   nan, 20.  , 30.  , 40.  , 53.67])

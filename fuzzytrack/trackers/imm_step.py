@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fuzzytrack.gains.joseph import correct_ca, predict_ca
+from fuzzytrack.kernels.exponential import exponential
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.start import axis_results, begin_step, lane_end
 
@@ -73,22 +74,6 @@ class ModelPair:
 def imm_rows(n_axes: int) -> Rows:
     """Layout of a lane."""
     return Rows(n_axes, PROBABILITIES + 2 * MODEL * n_axes, _SCRATCH)
-
-
-def _exp(x: float) -> float:
-    """Exponential for -300 <= x <= 300, to a relative 1e-13.
-
-    Compilers use different libraries for it, which differ in the last bit; this one is the same
-    everywhere, and is computed for neighboring lanes at once. It is the series of exp(x/1024) - 1,
-    squared ten times without loss of small terms.
-    """
-    r = (x if x > 0.0 else -x) / 1024.0
-    y = 1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r / 479001600))
-    y = 1 / 120 + r * (1 / 720 + r * (1 / 5040 + r * (1 / 40320 + r * y)))
-    y = r * (1.0 + r * (1 / 2 + r * (1 / 6 + r * (1 / 24 + r * y))))
-    for _ in range(10):
-        y = y * (2.0 + y)
-    return 1.0 / (1.0 + y) if x < 0.0 else 1.0 + y
 
 
 def switched(
@@ -309,7 +294,7 @@ def _lane_passes(
             quiet, maneuver = b[quiet_row * stride + i], b[maneuver_row * stride + i]
             ratio = math.sqrt(_between(1.0 / _RATIO, b[ratio_row * stride + i], _RATIO))
             exponent = _between(-_EXPONENT, b[exponent_row * stride + i], _EXPONENT)
-            odds = maneuver * (ratio * _exp(exponent))
+            odds = maneuver * (ratio * exponential(exponent))
             total = quiet + odds
             after_quiet = _between(floor, quiet / total, 1.0 - floor)
             after_maneuver = _between(floor, odds / total, 1.0 - floor)

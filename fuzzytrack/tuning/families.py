@@ -21,7 +21,7 @@ from fuzzytrack.schedulers import (
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.imm import InteractingModels
+from fuzzytrack.trackers.imm import InteractingPair
 from fuzzytrack.trackers.window_search import WindowSearch
 
 __all__ = ["FAMILIES", "Family", "Numbers", "stretched"]
@@ -125,7 +125,7 @@ def _omega(numbers: Numbers) -> Tracker:
 def _imm(maneuver: str) -> Callable[[Numbers], Tracker]:
     def make(numbers: Numbers) -> Tracker:
         quiet, hard, quiet_stay, hard_stay = numbers
-        return InteractingModels(quiet, hard, quiet_stay, hard_stay, maneuver, sigma_w=1.0)
+        return InteractingPair(quiet, hard, quiet_stay, hard_stay, maneuver, sigma_w=1.0)
 
     return make
 

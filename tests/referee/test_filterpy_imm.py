@@ -12,7 +12,7 @@ FilterPy is optional: ``pip install filterpy``. Three of its ways are gone round
 import numpy as np
 import pytest
 
-from fuzzytrack.trackers.imm import InteractingModels
+from fuzzytrack.trackers.imm import InteractingPair
 
 kalman = pytest.importorskip("filterpy.kalman", reason="FilterPy is not installed")
 
@@ -42,7 +42,7 @@ def model(accelerates, dt, sigma):
 @pytest.mark.parametrize("maneuver", ["ca", "cv"])
 def test_same_track_at_any_times_noise_and_gaps(maneuver, joint):
     times, z, sigma = plots()
-    ours = InteractingModels(0.1, 1.5, *STAY, maneuver=maneuver, joint=joint, velocity_sigma=9.0)
+    ours = InteractingPair(0.1, 1.5, *STAY, maneuver=maneuver, joint=joint, velocity_sigma=9.0)
     result = ours.run(times, z[:, None], sigma[:, None])
 
     accelerates = [False, maneuver == "ca"]

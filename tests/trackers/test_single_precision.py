@@ -11,7 +11,7 @@ from fuzzytrack.kernels.compile import entry_point
 from fuzzytrack.lanes import runner as module
 from fuzzytrack.lanes.layout import BLOCK
 from fuzzytrack.schedulers import GainScheduler, InnovationScheduler, KalmanCA, KalmanCV
-from fuzzytrack.trackers import InteractingModels, ParallelBank, WindowSearch
+from fuzzytrack.trackers import InteractingPair, ParallelBank, WindowSearch
 from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
@@ -166,7 +166,7 @@ def test_other_numbers_are_refused(dtype):
     ("tracker", "number"),
     [
         (ParallelBank(), r"1e\+300"),
-        (InteractingModels(0.2, 3.0), r"1e\+100"),
+        (InteractingPair(0.2, 3.0), r"1e\+100"),
         (ft.AlphaBetaTracker(KalmanCV(1e-24)), "1e-48"),
     ],
 )

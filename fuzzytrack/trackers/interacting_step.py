@@ -1,0 +1,304 @@
+"""The step of interacting models that share one covariance between all axes of a track.
+
+The same functions run in plain Python over a list and compiled over arrays, with the same results
+to the last bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fuzzytrack.gains.singer import correct_optimally
+from fuzzytrack.kernels.exponential import exponential
+from fuzzytrack.kernels.language import own_numbers, use_wide_vectors
+from fuzzytrack.lanes.start import axis_results, begin_step, lane_end
+from fuzzytrack.lanes.tuples import gather
+from fuzzytrack.trackers.model_mixing import FAR, Pass, covariance_writer, in_turn, mover
+from fuzzytrack.trackers.model_set import COVARIANCE, UNITS, ModelRows, ModelSet
+
+__all__ = ["step_function"]
+
+#: What each probability is raised by after a plot, so that no model is ever lost.
+_LEAST = 1e-7
+
+
+def step_function(numbers: ModelSet, places: ModelRows, stride: int) -> Pass:
+    """Function that does one time step of the first lanes of a buffer, in place.
+
+    Parameters
+    ----------
+    numbers : ModelSet
+    places : ModelRows
+    stride : int
+        Numbers between rows.
+    """
+    models = range(places.n_models)
+    return in_turn([
+        _begin(numbers, places, stride),
+        mover(numbers, places, stride, _bounded),
+        _measure(numbers, places, stride),
+        _judge(numbers, places, stride),
+        *(_correct(numbers, places, j, stride) for j in models),
+        _end(places, stride),
+    ])  # fmt: skip
+
+
+def _bounded(value: float) -> float:
+    value = value if value < FAR else FAR
+    return value if value > -FAR else -FAR
+
+
+def _begin(numbers: ModelSet, places: ModelRows, stride: int) -> Pass:
+    """What a step is, and the variance of its plot."""
+    rows, n_axes, nan = places.rows, places.n_axes, math.nan
+    plot_row, sigma_row, dt_row, gap_row, plots_row = (
+        rows.plot, rows.sigma, rows.dt, rows.gap, rows.plots
+    )  # fmt: skip
+    variance_row, pace_row = places.scratch("plot_variance"), places.scratch("pace")
+    fixed = numbers.plot_variance is not None
+    variance = 1.0 if numbers.plot_variance is None else numbers.plot_variance
+
+    def begin(b: Any, count: int) -> None:
+        use_wide_vectors()
+        for i in range(min(count, stride)):
+            seen, total = True, 0.0
+            for j in range(n_axes):
+                z, sigma = b[(plot_row + j) * stride + i], b[(sigma_row + j) * stride + i]
+                seen, total = seen & (z == z), total + sigma * sigma
+            for j in range(n_axes):
+                z = b[(plot_row + j) * stride + i]
+                b[(plot_row + j) * stride + i] = z if seen else nan
+            r = variance if fixed else total / n_axes
+            b[variance_row * stride + i] = r if seen else 1.0
+            dt, gap, _, _ = begin_step(
+                b[plots_row * stride + i], b[gap_row * stride + i], b[dt_row * stride + i], seen
+            )
+            b[dt_row * stride + i], b[gap_row * stride + i] = dt, gap
+            b[pace_row * stride + i] = 1.0 / gap
+
+    return begin
+
+
+def _measure(numbers: ModelSet, places: ModelRows, stride: int) -> Pass:
+    """Units of the track; the interval before a plot does not count for its own prediction."""
+    rows, a0 = places.rows, numbers.acceleration
+    plot_row, gap_row, plots_row = rows.plot, rows.gap, rows.plots
+    first_row, rate_row, noise_row, intervals_row = range(rows.memory, rows.memory + UNITS)
+    variance_row = places.scratch("plot_variance")
+    declared, level = a0 is not None, a0 or 0.0
+
+    def measure(b: Any, count: int) -> None:
+        use_wide_vectors()
+        for i in range(min(count, stride)):
+            z, plots = b[plot_row * stride + i], b[plots_row * stride + i]
+            gap, rate = b[gap_row * stride + i], b[rate_row * stride + i]
+            seen = z == z
+            new = seen & (plots == 0.0)
+            first = b[variance_row * stride + i] if new else b[first_row * stride + i]
+            b[first_row * stride + i] = first
+            if declared:
+                b[rate_row * stride + i] = math.sqrt(level / math.sqrt(first)) if new else rate
+                b[noise_row * stride + i] = level * level
+            else:
+                intervals, later = b[intervals_row * stride + i], seen & (plots > 0.0)
+                total = intervals / rate if intervals > 0.0 else 0.0
+                rate = (intervals + 1.0) / (total + gap) if later else rate
+                b[rate_row * stride + i] = rate
+                b[noise_row * stride + i] = first * (rate * rate) * (rate * rate)
+                b[intervals_row * stride + i] = intervals + 1.0 if later else intervals
+
+    return measure
+
+
+def _judge(numbers: ModelSet, places: ModelRows, stride: int) -> Pass:
+    """Predictions, and probabilities after the plot."""
+    rows, n, n_axes, size = places.rows, places.n_models, places.n_axes, places.size
+    p_row, c_row, moved_row = places.probability, places.scratch("chance"), places.moved(0)
+    plot_row, plots_row, gains_row = rows.plot, rows.plots, rows.gains
+    variance_row = places.scratch("plot_variance")
+    fitting, likelihood = _likelihood(numbers.half_freedom, n_axes)
+    write_results, least, lowest = axis_results(rows, stride), _LEAST, -math.inf
+    n_own, all_least = 3 * n, 1.0 / (1.0 + n * _LEAST)
+
+    def judge(b: Any, count: int) -> None:
+        use_wide_vectors()
+        own = own_numbers(n_own)
+        for i in range(min(count, stride)):
+            running = b[plots_row * stride + i] >= 2.0
+            seen = True
+            for k in range(n_axes):
+                z, x = b[(plot_row + k) * stride + i], b[(moved_row + k) * stride + i]
+                seen = z == z
+                apart = 0.0
+                for j in range(n):
+                    other = b[(moved_row + j * size + k) * stride + i]
+                    apart = apart + b[(c_row + j) * stride + i] * (other - x)
+                x = x + apart
+                write_results(b, k * stride + i, x, z - x, seen, running)
+
+            r, best, narrowest = b[variance_row * stride + i], lowest, 0.0
+            for j in range(n):
+                p11 = b[(moved_row + j * size + 3 * n_axes) * stride + i]
+                square = 0.0
+                for k in range(n_axes):
+                    z = b[(plot_row + k) * stride + i]
+                    e = _bounded(z - b[(moved_row + j * size + k) * stride + i])
+                    square = square + e * e
+                fit, inverse = fitting((p11 if p11 > 0.0 else 0.0) + r, square if seen else 0.0)
+                own[j], own[n + j] = fit, inverse
+                best = fit if fit > best else best
+                narrowest = inverse if inverse > narrowest else narrowest
+            total, width = 0.0, 1.0 / narrowest
+            for j in range(n):
+                weight = likelihood(own[j], best, own[n + j] * width)
+                weight = weight * b[(c_row + j) * stride + i]
+                own[2 * n + j] = weight
+                total = total + weight
+            update = seen & running
+            scale = 1.0 / (total if total > 0.0 else 1.0)
+            for j in range(n):
+                before = b[(c_row + j) * stride + i]
+                before = before if running else b[(p_row + j) * stride + i]
+                after = (own[2 * n + j] * scale + least) * all_least
+                b[(p_row + j) * stride + i] = after if update else before
+            for k in range(3):
+                b[(gains_row + k) * stride + i] = 0.0
+
+    return judge
+
+
+def _likelihood(
+    half_freedom: int | None, n_axes: int
+) -> tuple[Callable[[float, float], tuple[float, float]], Callable[[float, float, float], float]]:
+    """Functions for the likelihood of a plot, up to a factor that all models have in common.
+
+    The first one makes two numbers of S and e'e: how well the model fits, and 1/S, or what stands
+    for it. The second one makes the likelihood of the first, the greatest of all models, and the
+    quotient of the second and its greatest. No quotient is larger than 1, however large the
+    innovations are.
+    """
+    halves, odd = n_axes // 2, n_axes % 2 == 1
+
+    def root_power(x: float) -> float:
+        y = math.sqrt(x) if odd else 1.0
+        for _ in range(halves):
+            y = y * x
+        return y
+
+    if half_freedom is None:
+
+        def exponent(s: float, square: float) -> tuple[float, float]:
+            inverse = 1.0 / s
+            return -0.5 * square * inverse, inverse
+
+        def gaussian(fit: float, best: float, narrow: float) -> float:
+            worse = fit - best
+            return root_power(narrow) * exponential(worse if worse > -300.0 else -300.0)
+
+        return exponent, gaussian
+
+    freedom = 2.0 * half_freedom
+
+    def share(s: float, square: float) -> tuple[float, float]:
+        inverse = 1.0 / (freedom * s + square)
+        return s * inverse, inverse
+
+    def student(fit: float, best: float, narrow: float) -> float:
+        ratio, y = fit / best, root_power(narrow)
+        for _ in range(half_freedom):
+            y = y * ratio
+        return y
+
+    return share, student
+
+
+def _correct(numbers: ModelSet, places: ModelRows, j: int, stride: int) -> Pass:
+    """Start or correct a model, and add its gain to those of the track."""
+    rows, n_axes, accelerates = places.rows, places.n_axes, numbers.models[j].accelerates
+    model_row, moved_row = places.model(j), places.moved(j)
+    plot_row, last_row, dt_row, gap_row, plots_row, gains_row = (
+        rows.plot, rows.last_plot, rows.dt, rows.gap, rows.plots, rows.gains
+    )  # fmt: skip
+    first_row, p_row, pace_row = rows.memory, places.probability + j, places.scratch("pace")
+    variance_row, noise_row = places.scratch("plot_variance"), places.noise_unit
+    read, write = gather(COVARIANCE, stride), covariance_writer(stride)
+    begun = (numbers.start_acceleration if accelerates else numbers.models[j].noise) ** 2
+
+    def correct(b: Any, count: int) -> None:
+        use_wide_vectors()
+        for i in range(min(count, stride)):
+            plots, gap = b[plots_row * stride + i], b[gap_row * stride + i]
+            z = b[plot_row * stride + i]
+            seen, running, starts = z == z, plots >= 2.0, plots == 1.0
+            r, pace = b[variance_row * stride + i], b[pace_row * stride + i]
+            p11, p12, p13, p22, p23, p33 = read(b, (moved_row + 3 * n_axes) * stride + i)
+            p11 = p11 if p11 > 0.0 else 0.0
+            k1, k2, k3, after = correct_optimally(p11, p12, p13, p22, p23, p33, r)
+            for k in range(n_axes):
+                z, last = b[(plot_row + k) * stride + i], b[(last_row + k) * stride + i]
+                m = k * stride + i
+                x = b[moved_row * stride + m]
+                v = b[(moved_row + n_axes) * stride + m]
+                a = b[(moved_row + 2 * n_axes) * stride + m]
+                e = z - x if seen else 0.0
+                old = b[model_row * stride + m]
+                begin_v = (z - last) * pace if starts & seen else 0.0
+                begin_x = z if seen else old
+                b[model_row * stride + m] = x + k1 * e if running else begin_x
+                b[(model_row + n_axes) * stride + m] = v + k2 * e if running else begin_v
+                b[(model_row + 2 * n_axes) * stride + m] = a + k3 * e if running else 0.0
+
+            q = begun * b[noise_row * stride + i]
+            q33 = q if accelerates else 0.0
+            n11, n12, n13, n22, n23, n33 = after
+            # After a long gap rounding could make it negative.
+            n22, n33 = n22 if n22 > 0.0 else 0.0, n33 if n33 > 0.0 else 0.0
+            both = b[first_row * stride + i] + r
+            after = (
+                (n11 if seen else p11) if running else r,
+                (n12 if seen else p12) if running else r * pace,
+                (n13 if seen else p13) if running else 0.0,
+                (n22 if seen else p22) if running else both * pace * pace + 0.25 * q * gap * gap,
+                (n23 if seen else p23) if running else 0.5 * q33 * gap,
+                (n33 if seen else p33) if running else q33,
+            )
+            write(b, (model_row + 3 * n_axes) * stride + i, after)
+
+            p, dt = b[p_row * stride + i], b[dt_row * stride + i]
+            for k, gain in ((0, k1), (1, k2 * dt), (2, 2.0 * k3 * dt * dt)):
+                b[(gains_row + k) * stride + i] = b[(gains_row + k) * stride + i] + p * gain
+
+    return correct
+
+
+def _end(places: ModelRows, stride: int) -> Pass:
+    """Mean of the models, and the count of the plot."""
+    rows, n, n_axes, size = places.rows, places.n_models, places.n_axes, places.size
+    model_row, p_row, nan = places.model(0), places.probability, math.nan
+    plot_row, last_row, gap_row, plots_row, gains_row = (
+        rows.plot, rows.last_plot, rows.gap, rows.plots, rows.gains
+    )  # fmt: skip
+    gains, end_lane = gather(3, stride), lane_end(rows, stride)
+
+    def end(b: Any, count: int) -> None:
+        use_wide_vectors()
+        for i in range(min(count, stride)):
+            plots, z = b[plots_row * stride + i], b[plot_row * stride + i]
+            seen = z == z
+            for k in range(n_axes):
+                z, last = b[(plot_row + k) * stride + i], b[(last_row + k) * stride + i]
+                b[(last_row + k) * stride + i] = z if seen else last
+            # Positions, velocities, accelerations: in the same order in a state and in a model.
+            for k in range(3 * n_axes):
+                first, apart = b[(model_row + k) * stride + i], 0.0
+                for j in range(n):
+                    other = b[(model_row + j * size + k) * stride + i]
+                    apart = apart + b[(p_row + j) * stride + i] * (other - first)
+                known = seen | (plots > 0.0) | (k >= n_axes)
+                b[k * stride + i] = first + apart if known else nan
+            alpha, beta, gamma = gains(b, gains_row * stride + i)
+            end_lane(b, i, plots, b[gap_row * stride + i], seen, alpha, beta, gamma)
+
+    return end
