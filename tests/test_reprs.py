@@ -41,7 +41,13 @@ from fuzzytrack.simulation.sensor_field import canonical_field
 from fuzzytrack.testbed.comparison import compare
 from fuzzytrack.testbed.metrics import PairedDifference
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.trackers import InteractingPair, ParallelBank, WindowSearch
+from fuzzytrack.trackers import (
+    InteractingModels,
+    InteractingPair,
+    MotionModel,
+    ParallelBank,
+    WindowSearch,
+)
 from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.track_store import TrackStore
 from fuzzytrack.tuning import VARIANTS, rank
@@ -79,6 +85,10 @@ CASES = {
     "WindowSearch()": WindowSearch(),
     'InteractingPair(0.1, 2.0, maneuver="cv", joint=False)': InteractingPair(
         0.1, 2, maneuver="cv", joint=False
+    ),
+    "InteractingModels((MotionModel(0.5), MotionModel(2.0, retention=4.0)), "
+    "((0.0, 0.25), (0.5, 0.0)), (0.75, 0.25), level=3.0)": InteractingModels(
+        (MotionModel(0.5), MotionModel(2, 4)), ((0, 0.25), (0.5, 0)), (0.75, 0.25), 3
     ),
     'Fuzzification(shape="gaussian", width=0.5)': ft.Fuzzification("gaussian", 0.5),
 }

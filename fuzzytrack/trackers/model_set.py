@@ -128,7 +128,7 @@ class ModelRows:
         n = self.n_models
         counts = dict.fromkeys(("plot_variance", "pace", "time", "scale"), 1)
         counts |= {"chance": n, "share": n * n, "spread": COVARIANCE * max(1, len(self.pairs))}
-        counts |= {"moved": n * self.size}
+        counts |= {"moved": n * self.size, "gain": 3 * n}
         names = tuple(f"{name} {k}" for name, count in counts.items() for k in range(count))
         return Rows(self.n_axes, self.n_memory, names)
 
