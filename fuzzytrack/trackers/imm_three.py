@@ -27,6 +27,7 @@ def three_model_imm(
     strong_start: float = 0.005,
     freedom: float = 6.0,
     sigma_w: float | None = None,
+    missed: str = "elapsed",
 ) -> InteractingModels:
     """Interacting models for a straight course, a moderate maneuver and a strong one.
 
@@ -58,6 +59,8 @@ def three_model_imm(
         Degrees of freedom of the likelihood, an even number >= 2, or infinity.
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0; otherwise the `sigma` of each.
+    missed : {"elapsed", "step"}
+        As for `fuzzytrack.AlphaBetaTracker`.
 
     Returns
     -------
@@ -88,6 +91,7 @@ def three_model_imm(
         start_acceleration,
         freedom,
         sigma_w,
+        missed,
     )
 
 

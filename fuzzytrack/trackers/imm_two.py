@@ -22,6 +22,7 @@ def two_model_imm(
     maneuver_start: float = 0.02,
     freedom: float = 6.0,
     sigma_w: float | None = None,
+    missed: str = "elapsed",
 ) -> InteractingModels:
     """Interacting models for a straight course and for a maneuver.
 
@@ -50,6 +51,8 @@ def two_model_imm(
         Degrees of freedom of the likelihood, an even number >= 2, or infinity.
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0; otherwise the `sigma` of each.
+    missed : {"elapsed", "step"}
+        As for `fuzzytrack.AlphaBetaTracker`.
 
     Returns
     -------
@@ -76,6 +79,7 @@ def two_model_imm(
         start_acceleration,
         freedom,
         sigma_w,
+        missed,
     )
 
 

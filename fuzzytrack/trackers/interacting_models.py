@@ -56,6 +56,8 @@ class InteractingModels(LaneTracker):
         about the models.
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0. Unless given, the `sigma` of each plot is used.
+    missed : {"elapsed", "step"}
+        As for `fuzzytrack.AlphaBetaTracker`.
 
     Raises
     ------
@@ -90,9 +92,9 @@ class InteractingModels(LaneTracker):
     >>> tracker = InteractingModels((straight, turning), rates, (0.98, 0.02), level=3.0)
     >>> result = tracker.run([0, 1, 2, 3, 4, 5], [0, 10, 20, 30, 43, 59], sigma=1.0)
     >>> result.predicted.round(2)
-    array([  nan,   nan, 20.  , 30.  , 40.  , 54.47])
+    array([ nan,  nan, 20. , 30. , 40. , 52.9])
     >>> tracker.probabilities(result.state).round(2)
-    array([0.03, 0.97])
+    array([0.18, 0.82])
     """
 
     source: ClassVar[str] = "Blom & Bar-Shalom (1988), with Singer (1970)"
@@ -106,6 +108,7 @@ class InteractingModels(LaneTracker):
     start_acceleration: float = 1.0
     freedom: float = 6.0
     sigma_w: float | None = None
+    missed: str = "elapsed"
 
     def __post_init__(self) -> None:
         checked = {

@@ -85,13 +85,20 @@ def _squared(generator: Array) -> tuple[Array, list[float]]:
     one = np.eye(len(generator))
     adjugate, determinant = [one], [1.0]
     for k in range(1, len(generator)):
-        product = generator @ adjugate[-1]
+        product = _product(generator, adjugate[-1])
         determinant.append(-float(np.trace(product)) / k)
         adjugate.append(product + determinant[-1] * one)
-    halves = 0.5 ** np.arange(2 * len(adjugate) - 1)
-    matrices = np.zeros((len(halves), *one.shape))
+    count = 2 * len(adjugate) - 1
+    matrices, scale = np.zeros((count, *one.shape)), [0.0] * count
     for k, left in enumerate(adjugate):
         for m, right in enumerate(adjugate):
-            matrices[k + m] += left @ right
-    scale = np.convolve(determinant, determinant) * halves
-    return matrices * halves[:, None, None], scale.tolist()
+            half = 0.5 ** (k + m)
+            matrices[k + m] += half * _product(left, right)
+            scale[k + m] += half * determinant[k] * determinant[m]
+    return matrices, scale
+
+
+def _product(left: Array, right: Array) -> Array:
+    """Product of two matrices, the same to the last bit on every machine."""
+    product: Array = (left[:, :, None] * right).sum(axis=1)
+    return product

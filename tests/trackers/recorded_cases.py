@@ -265,6 +265,8 @@ OTHERS = (
     Case("imm, cv, from one plot",
          f"{IMM}:maneuver=cv:joint=false:velocity_sigma=32:maneuver_start=0.25", noise=True,
          single=False),
+    Case("imm-two", "imm-two", noise=True, compiled=True),
+    Case("imm-three", "imm-three:level=4:sigma_w=8", compiled=True),
 )  # fmt: skip
 
 CASES = (*FIXED, *MEMORY, *SHIPPED, *RULES, *OTHERS)
