@@ -84,6 +84,12 @@ def tuned(conditions: Conditions) -> dict[str, str]:
     }
 
 
+def with_level(conditions: Conditions) -> dict[str, str]:
+    """Trackers that are told the strongest maneuver to expect, with their defaults else."""
+    names = ("imm-two", "imm-three")
+    return {name: f"{name}:level={conditions.level}" for name in names}
+
+
 def with_period(conditions: Conditions) -> dict[str, str]:
     """Dimensionless gains that are converted from the period that they belong to."""
     given = {**defaults(), **tuned(conditions)}
@@ -93,4 +99,5 @@ def with_period(conditions: Conditions) -> dict[str, str]:
 
 def ranked(conditions: Conditions) -> dict[str, str]:
     """All of them by name, as `fuzzytrack.trackers.catalog.make_tracker` reads them."""
-    return {**defaults(), **tuned(conditions), **with_period(conditions)}
+    given = (defaults(), tuned(conditions), with_level(conditions), with_period(conditions))
+    return {name: spec for group in given for name, spec in group.items()}

@@ -29,7 +29,9 @@ from fuzzytrack.yamltree import suggestion
 
 CONSTANT = "constant T"
 FIXED, KALMAN = "fixed .543 .548", "Kalman CV"
-AGAINST = ("IMM CV/CA",)
+AGAINST = ("imm-three", "IMM CV/CA")
+# Rows of a table of paired differences: the best at constant T.
+_BEST = 10
 # Times as large an error as the reference from which on only that is shown.
 _FAR, _LOST = 3.0, 1000.0
 # Variants of the first table; the others are in the second.
@@ -118,10 +120,10 @@ def main_table(found: Mapping[str, Any], columns: Sequence[str]) -> Table:
 
 
 def paired_table(found: Mapping[str, Any], reference: str, columns: Sequence[str]) -> Table:
-    """Paired differences against a reference, with standard errors; a head in front."""
+    """Paired differences of the best against a reference; a head in front."""
     table = changes(found, reference)
     rows = [[f"against {reference}, %", *columns]]
-    for name in ordered(found):
+    for name in ordered(found)[:_BEST]:
         if name != reference:
             rows.append([name, *(shown(table[name][column], 2) for column in columns)])
     return rows

@@ -73,6 +73,7 @@ def measured(case: Case, folder: Path, runs: int, seed: int, watch: Progress) ->
         "changes": {
             reference: {name: change(found, name, reference) for name in found.names}
             for reference in (KALMAN, *AGAINST)
+            if reference in trackers
         },
     }
 

@@ -27,7 +27,7 @@ def test_every_tracker_of_the_package_is_ranked():
     known = {each.name for each in catalog() if each.kind != "normalization"}
     # Two are given by what they contain.
     given = {"fuzzy", "alpha-beta"}
-    later = {"maneuver", "maneuver-two-rules", "imm-two", "imm-three"}
+    later = {"maneuver", "maneuver-two-rules"}
     assert known - given - later <= set(specs)
 
 
