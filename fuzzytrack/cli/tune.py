@@ -22,10 +22,11 @@ __all__ = ["tune"]
 
 def tune(
     data: Annotated[
-        str,
+        list[str],
         typer.Argument(
-            metavar="DATA|SCENARIO",
-            help="File of plots; or a shipped scenario, or FILE.yaml, to be simulated.",
+            metavar="DATA|SCENARIO...",
+            help="File of plots; or a shipped scenario, or FILE.yaml, to be simulated. Several "
+            "count alike.",
         ),
     ],
     tracker: Annotated[
@@ -130,14 +131,14 @@ def tune(
         say(f"wrote {output}")
 
 
-def _check_output(output: str, tracker: str, data: str) -> None:
+def _check_output(output: str, tracker: str, data: list[str]) -> None:
     """Find out what cannot be written before the work is done."""
     name, _ = split(tracker, "tracker")
     if not (is_file(name) or name in shipped_rulebases()):
         raise ValueError(
             f"--output: a tuned {name} has no file; without it, its specification is printed"
         )
-    check_output(output, (data,))
+    check_output(output, tuple(data))
 
 
 def _print(found: Tuned) -> None:

@@ -9,7 +9,7 @@ from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, is_number, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode
 
-__all__ = ["NumberPlaces", "Place", "Span", "replaced", "with_numbers", "written"]
+__all__ = ["NumberPlaces", "replaced", "with_numbers", "written"]
 
 #: Keys and indices that lead to a number, as ``("inputs", "E", "sets", "ze", "trimf", 1)``.
 Place = tuple[str | int, ...]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +12,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.tuning.data import Batch
+from fuzzytrack.tuning.folds import Folds
 
 __all__ = ["CRITERIA", "Change", "Criterion", "Likelihood", "RmsError"]
 
@@ -23,13 +23,9 @@ Change = tuple[float, float, float]
 class Criterion(ABC):
     """What is summed over the scored plots, and how two trackers are compared by it.
 
-    Attributes
-    ----------
-    unit : str
-        Of the value that is shown.
+    The level of a tracker is a mean over groups of tracks, so that each of them counts alike; the
+    level is minimized.
     """
-
-    unit: ClassVar[str]
 
     @abstractmethod
     def terms(self, tracker: Tracker, batch: Batch) -> Array:
@@ -39,39 +35,85 @@ class Criterion(ABC):
         """
 
     @abstractmethod
-    def value(self, total: float, plots: int) -> float:
-        """Value that is shown of a sum over some plots; less is better."""
+    def level(self, total: Array, plots: Array) -> Array:
+        """Level of sums over some plots; elementwise."""
 
     @abstractmethod
-    def loss(self, total: float, plots: int) -> float:
-        """Value that is minimized."""
+    def value(self, level: float) -> float:
+        """Value that is shown of a level; less is better."""
 
     @abstractmethod
-    def change(self, tuned: Array, other: Array, plots: NDArray[np.int64]) -> Change:
-        """Change of the value from another tracker to the tuned one, with a 95 % interval.
-
-        Parameters
-        ----------
-        tuned, other : ndarray, shape (n_units,)
-            Sums of both in each unit.
-        plots : ndarray of int, shape (n_units,)
-            Plots of each unit.
-
-        Notes
-        -----
-        Jackknife over units, with Student's t. Both saw the same plots, so the interval is that of
-        paired differences.
-        """
+    def change(self, difference: float) -> float:
+        """Change that is shown of a difference of levels."""
 
     @abstractmethod
     def written(self, change: Change) -> str:
         """A change with its interval, as text."""
 
+    def levels(self, sums: Array, folds: Folds, units: NDArray[np.bool_]) -> float:
+        """Mean level over the groups of some units.
+
+        Parameters
+        ----------
+        sums : ndarray, shape (n_units,)
+        folds : Folds
+        units : ndarray of bool, shape (n_units,)
+            Which units count.
+        """
+        groups = folds.group[units]
+        total: Array = np.bincount(groups, sums[units]).astype(np.float64)
+        plots: Array = np.bincount(groups, folds.plots[units]).astype(np.float64)
+        there = plots > 0
+        return float(self.level(total[there], plots[there]).mean())
+
+    def compare(self, tuned: Array, other: Array, folds: Folds) -> Change:
+        """Change from another tracker to the tuned one, with a 95 % interval.
+
+        Parameters
+        ----------
+        tuned, other : ndarray, shape (n_units,)
+            Sums of both in each unit.
+        folds : Folds
+
+        Notes
+        -----
+        Jackknife over the units of each group, with Student's t. Both saw the same plots, so the
+        interval is that of paired differences.
+        """
+        if not (np.isfinite(tuned).all() and np.isfinite(other).all()):
+            whole = self.change(-math.inf if np.isfinite(tuned).all() else math.inf)
+            return whole, whole, whole
+        from scipy.stats import t
+
+        every = np.ones(len(tuned), dtype=np.bool_)
+
+        def difference(units: NDArray[np.bool_]) -> float:
+            return self.levels(tuned, folds, units) - self.levels(other, folds, units)
+
+        variance, freedom = 0.0, 0
+        for group in np.unique(folds.group):
+            members = np.flatnonzero(folds.group == group)
+            without = [difference(_all_but(every, unit)) for unit in members.tolist()]
+            count = len(members)
+            if count > 1:
+                variance += (count - 1) ** 2 / count * float(np.var(without, ddof=1))
+                freedom += count - 1
+        reach = float(t.ppf(0.975, freedom)) * math.sqrt(variance)
+        middle = difference(every)
+        return self.change(middle), self.change(middle - reach), self.change(middle + reach)
+
+
+def _all_but(units: NDArray[np.bool_], unit: int) -> NDArray[np.bool_]:
+    rest = units.copy()
+    rest[unit] = False
+    return rest
+
 
 class RmsError(Criterion):
-    """Root mean square of prediction minus truth or, without truth, minus plot (m)."""
+    """Root mean square of prediction minus truth or, without truth, minus plot (m).
 
-    unit = "m"
+    Its level is the logarithm, so that a group counts by relative changes of its error.
+    """
 
     def terms(self, tracker: Tracker, batch: Batch) -> Array:
         """See `Criterion.terms`: squared distances."""
@@ -85,23 +127,18 @@ class RmsError(Criterion):
         with np.errstate(over="ignore", invalid="ignore"):
             return _finite(((result.predicted - batch.target) ** 2).sum(axis=-1))
 
-    def value(self, total: float, plots: int) -> float:
-        """See `Criterion.value`: the RMS error."""
-        return math.sqrt(total / plots)
+    def level(self, total: Array, plots: Array) -> Array:
+        """See `Criterion.level`: the logarithm of the RMS error."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(0.5 * np.log(total / plots))
 
-    def loss(self, total: float, plots: int) -> float:
-        """See `Criterion.loss`: the logarithm of the RMS error."""
-        return 0.5 * math.log(total / plots) if total > 0 else -math.inf
+    def value(self, level: float) -> float:
+        """See `Criterion.value`: the RMS error, the geometric mean over groups."""
+        return math.exp(level)
 
-    def change(self, tuned: Array, other: Array, plots: NDArray[np.int64]) -> Change:
+    def change(self, difference: float) -> float:
         """See `Criterion.change`: relative."""
-        if not (np.isfinite(tuned).all() and np.isfinite(other).all()):
-            whole = -1.0 if np.isfinite(tuned).all() else math.inf
-            return whole, whole, whole
-        ratio = 0.5 * math.log(tuned.sum() / other.sum())
-        without = 0.5 * np.log((tuned.sum() - tuned) / (other.sum() - other))
-        low, middle, high = (math.expm1(x) for x in _interval(ratio, without))
-        return middle, low, high
+        return math.expm1(difference)
 
     def written(self, change: Change) -> str:
         """See `Criterion.written`: in percent."""
@@ -116,8 +153,6 @@ class Likelihood(Criterion):
     `fuzzytrack.trackers.prediction.Prediction`. Each track is followed step by step, which takes
     longer than a run.
     """
-
-    unit = "nats a plot"
 
     def terms(self, tracker: Tracker, batch: Batch) -> Array:
         """See `Criterion.terms`: ½ Σ (e²/S + ln 2πS) over the axes."""
@@ -138,23 +173,17 @@ class Likelihood(Criterion):
             state = tracker.step(state, z, t, sigma)
         return _finite(found)
 
-    def value(self, total: float, plots: int) -> float:
-        """See `Criterion.value`: the mean."""
-        return total / plots
+    def level(self, total: Array, plots: Array) -> Array:
+        """See `Criterion.level`: the mean."""
+        return np.asarray(total / plots)
 
-    def loss(self, total: float, plots: int) -> float:
-        """See `Criterion.loss`: the mean."""
-        return total / plots
+    def value(self, level: float) -> float:
+        """See `Criterion.value`: the level itself."""
+        return level
 
-    def change(self, tuned: Array, other: Array, plots: NDArray[np.int64]) -> Change:
-        """See `Criterion.change`: the difference."""
-        if not np.isfinite(tuned - other).all():
-            whole = -math.inf if np.isfinite(tuned).all() else math.inf
-            return whole, whole, whole
-        difference, count = tuned - other, plots.sum()
-        without = (difference.sum() - difference) / (count - plots)
-        low, middle, high = _interval(float(difference.sum() / count), without)
-        return middle, low, high
+    def change(self, difference: float) -> float:
+        """See `Criterion.change`: the difference itself."""
+        return difference
 
     def written(self, change: Change) -> str:
         """See `Criterion.written`."""
@@ -168,13 +197,3 @@ CRITERIA: dict[str, Criterion] = {"rms": RmsError(), "likelihood": Likelihood()}
 
 def _finite(terms: Array) -> Array:
     return np.where(np.isfinite(terms), terms, math.inf)
-
-
-def _interval(middle: float, without: Array) -> tuple[float, float, float]:
-    """Value with the ends of its 95 % interval, from the values without each of the units."""
-    from scipy.stats import t
-
-    count = len(without)
-    spread = math.sqrt((count - 1) / count * float(((without - without.mean()) ** 2).sum()))
-    reach = float(t.ppf(0.975, count - 1)) * spread
-    return middle - reach, middle, middle + reach

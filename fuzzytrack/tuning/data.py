@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,7 +21,7 @@ from fuzzytrack.simulation.noise import streams, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["LEAST_PLOTS", "Batch", "TuningData", "TuningTrack", "recorded", "simulated"]
+__all__ = ["LEAST_PLOTS", "Batch", "TuningData", "TuningTrack", "joined", "recorded", "simulated"]
 
 #: Plots that are scored, in all tracks together, below which nothing is tuned.
 LEAST_PLOTS = 200
@@ -44,6 +44,10 @@ class TuningTrack:
         True positions (m); NaN where unknown.
     sigma : ndarray or None, shape (n_steps, n_axes)
         Standard deviation of each plot (m).
+    group : int
+        Group of tracks to which it belongs; all groups count alike, however many tracks they have.
+    start : int
+        Number of its first plots that are not scored, at least 2.
     """
 
     id: str
@@ -51,6 +55,8 @@ class TuningTrack:
     plots: Array
     truth: Array | None = None
     sigma: Array | None = None
+    group: int = 0
+    start: int = _START
 
     def __repr__(self) -> str:
         return summary(self, "id", "plots")
@@ -60,7 +66,7 @@ class TuningTrack:
         """Whether the prediction of each plot is scored, shape (n_steps,)."""
         seen = ~np.isnan(self.plots).any(axis=1)
         known = seen if self.truth is None else seen & ~np.isnan(self.truth).any(axis=1)
-        return known & (np.cumsum(seen) > _START)
+        return known & (np.cumsum(seen) > self.start)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +194,33 @@ class TuningData:
         )
 
 
+def joined(parts: Sequence[TuningData]) -> TuningData:
+    """Data of several sources as one, each a group that counts like the others.
+
+    Raises
+    ------
+    ValueError
+        If they differ in their axes, or in whether truth and sigma are known.
+    """
+    first = parts[0]
+    for other in parts[1:]:
+        for what in ("n_axes", "has_truth", "has_sigma"):
+            if getattr(other, what) != getattr(first, what):
+                raise ValueError(
+                    f"data: {first.name} and {other.name} cannot be tuned on together; they differ "
+                    f"in {_DIFFERENCES[what]}"
+                )
+    tracks = (replace(track, group=k) for k, part in enumerate(parts) for track in part.tracks)
+    return TuningData(", ".join(part.name for part in parts), tuple(tracks))
+
+
+_DIFFERENCES = {
+    "n_axes": "their number of axes",
+    "has_truth": "whether the truth is known",
+    "has_sigma": "whether the standard deviation of plots is known",
+}
+
+
 def simulated(scenario: Scenario, runs: int, seed: int) -> TuningData:
     """Runs of a scenario, each with its truth.
 
@@ -205,7 +238,14 @@ def simulated(scenario: Scenario, runs: int, seed: int) -> TuningData:
     times = scenario.times(0, runs)
     own = np.broadcast_to(times.reshape(len(times), -1), plots.z.shape[:2])
     tracks = tuple(
-        TuningTrack(str(k + 1), own[:, k], plots.z[:, k], truth[:, k], plots.sigma[:, k])
+        TuningTrack(
+            str(k + 1),
+            own[:, k],
+            plots.z[:, k],
+            truth[:, k],
+            plots.sigma[:, k],
+            start=max(_START, scenario.first_scored),
+        )
         for k in range(runs)
     )
     return TuningData(scenario.name, tracks)

@@ -33,12 +33,15 @@ class Folds:
         In which fold a unit is held out.
     plots : ndarray of int, shape (n_units,)
         Number of scored plots of each unit.
+    group : ndarray of int, shape (n_units,)
+        The group of the tracks of each unit.
     """
 
     kind: str
     units: tuple[NDArray[np.int64], ...]
     fold: NDArray[np.int64]
     plots: NDArray[np.int64]
+    group: NDArray[np.int64]
 
     def __repr__(self) -> str:
         return summary(self, "kind", "fold")
@@ -92,7 +95,8 @@ def make_folds(data: TuningData, folds: int, seed: int) -> Folds:
     fold = np.empty(number, dtype=np.int64)
     fold[order] = np.arange(number) % min(folds, number)
     plots = np.bincount(np.concatenate([u[u >= 0] for u in units]), minlength=number)
-    return Folds("blocks of time" if by_time else "tracks", tuple(units), fold, plots)
+    group = np.repeat([track.group for track in data.tracks], counts)
+    return Folds("blocks of time" if by_time else "tracks", tuple(units), fold, plots, group)
 
 
 def _whole(scored: NDArray[np.bool_]) -> NDArray[np.int64]:

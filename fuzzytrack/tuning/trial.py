@@ -76,14 +76,13 @@ class Trials:
         return found
 
     def losses(self, candidates: Candidates, trials: Sequence[Numbers], held: int) -> list[float]:
-        """Losses of trackers on all units but those of a fold; on all of them for -1."""
+        """Levels of trackers on all units but those of a fold; on all of them for -1."""
         trained = self.folds.fold != held
-        plots = int(self.folds.plots[trained].sum())
-        found = []
-        for sums in self.sums(candidates, trials):
-            loss = self.criterion.loss(float(sums[trained].sum()), plots)
-            found.append(loss if math.isfinite(loss) else REFUSED)
-        return found
+        found = (
+            self.criterion.levels(sums, self.folds, trained)
+            for sums in self.sums(candidates, trials)
+        )
+        return [loss if math.isfinite(loss) else REFUSED for loss in found]
 
     def _sums(self, tracker: Tracker | None) -> Array:
         if tracker is None:

@@ -22,7 +22,7 @@ from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenario
 from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import CRITERIA, Criterion, Likelihood
-from fuzzytrack.tuning.data import TuningData, recorded, simulated
+from fuzzytrack.tuning.data import TuningData, joined, recorded, simulated
 from fuzzytrack.tuning.folds import make_folds
 from fuzzytrack.tuning.journal import Journal
 from fuzzytrack.tuning.parameters import Numbers
@@ -33,7 +33,10 @@ from fuzzytrack.tuning.trial import Trials
 from fuzzytrack.tuning.tuned import Row, Tuned, with_head
 from fuzzytrack.version import __version__
 
-__all__ = ["tune"]
+__all__ = ["Source", "tune"]
+
+#: What data come from; see `tune`.
+Source = TuningData | Scenario | str | os.PathLike[str]
 
 # Trials of a search: so many, and so many more for each free number.
 _TRIALS, _TRIALS_EACH = 60, 40
@@ -44,7 +47,7 @@ _ALL = -1
 
 
 def tune(
-    data: TuningData | Scenario | str | os.PathLike[str],
+    data: Source | Sequence[Source],
     tracker: str | RuleBase,
     *,
     free: Collection[str] | None = None,
@@ -68,9 +71,10 @@ def tune(
 
     Parameters
     ----------
-    data : TuningData, Scenario, str or path
+    data : TuningData, Scenario, str or path, or sequence of these
         The name of a shipped scenario or a YAML file, whose runs are simulated with their truth; or
-        a file of recorded plots, see `fuzzytrack.io.read_tracks`.
+        a file of recorded plots, see `fuzzytrack.io.read_tracks`. Of several each counts alike: the
+        RMS error is then the geometric mean of theirs.
     tracker : str or RuleBase
         A rule base, by its name or file, or a scheduler or tracker, as
         `fuzzytrack.trackers.catalog.make_tracker` reads it (``imm``,
@@ -133,7 +137,9 @@ def tune(
     returned was tuned on all data; held-out errors are those of trackers that did not see them.
     """
     judged = _criterion(criterion)
-    found = _data(data, sigma, truth, time, id, axes, sort, runs, seed)
+    found = _data(
+        data, runs, seed, sigma=sigma, truth=truth, time=time, id=id, axes=axes, sort=sort
+    )
     candidates = _candidates(tracker, free, found)
     divided = make_folds(found, folds, seed)
     families = [candidates, *_rivals(candidates, found, judged)]
@@ -181,24 +187,18 @@ def tune(
 # -------------------------------------------------------------------- what is tuned
 
 
-def _data(
-    data: TuningData | Scenario | str | os.PathLike[str],
-    sigma: float | None,
-    truth: str | os.PathLike[str] | None,
-    time: str | None,
-    id: str | None,
-    axes: Sequence[str] | None,
-    sort: bool,
-    runs: int,
-    seed: int,
-) -> TuningData:
+def _data(data: Source | Sequence[Source], runs: int, seed: int, **recording: Any) -> TuningData:
+    if isinstance(data, Sequence) and not isinstance(data, str):
+        if not data:
+            raise ValueError("data: at least one file or scenario is needed")
+        return joined([_data(each, runs, seed, **recording) for each in data])
     if isinstance(data, TuningData):
         return data
     if isinstance(data, str) and (data in shipped_scenarios() or specs.is_file(data)):
         data = load_scenario(data)
-    if isinstance(data, Scenario):
-        return simulated(data, runs, seed)
-    return recorded(data, sigma=sigma, truth=truth, time=time, id=id, axes=axes, sort=sort)
+    return (
+        simulated(data, runs, seed) if isinstance(data, Scenario) else recorded(data, **recording)
+    )
 
 
 def _candidates(
@@ -388,13 +388,12 @@ def _rows(
         ]
         sums = run.sums(family, tried)
         held[name] = np.array([sums[k][unit] for unit, k in enumerate(folds.fold)])
-        inside = [float(s[folds.fold != k].sum()) for k, s in enumerate(sums)]
-        plots = [int(folds.plots[folds.fold != k].sum()) for k in range(folds.number)]
-        training[name] = run.criterion.value(sum(inside), sum(plots))
-    rows = []
+        levels = [run.criterion.levels(s, folds, folds.fold != k) for k, s in enumerate(sums)]
+        training[name] = run.criterion.value(sum(levels) / len(levels))
+    rows, every = [], np.ones(len(folds.fold), dtype=np.bool_)
     for name, number, is_tuned in named:
-        value = run.criterion.value(float(held[name].sum()), int(folds.plots.sum()))
-        change = run.criterion.change(held["tuned"], held[name], folds.plots)
+        value = run.criterion.value(run.criterion.levels(held[name], folds, every))
+        change = run.criterion.compare(held["tuned"], held[name], folds)
         last = name == "tuned"
         text = "" if last else run.criterion.written(change)
         family = families[number]

@@ -13,6 +13,7 @@ from fuzzytrack.gains import kalata
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.tuning import TuningData, TuningTrack, tuner
 from fuzzytrack.tuning.criteria import CRITERIA, RmsError
+from fuzzytrack.tuning.folds import Folds
 from fuzzytrack.tuning.trial import REFUSED, Trials
 from fuzzytrack.tuning.tuned import with_head
 
@@ -95,7 +96,8 @@ def test_errors_are_those_of_the_trackers_run_alone():
         total += float(((predicted.predicted - track.truth)[2:] ** 2).sum())
     expected = math.sqrt(total / (4 * 68))
     assert found.rows[0].held_out == pytest.approx(expected, rel=1e-9)
-    assert found.rows[0].training == pytest.approx(expected, rel=1e-9)
+    # The mean over folds, each of which holds out the other half.
+    assert found.rows[0].training == pytest.approx(expected, rel=0.01)
     assert found.start == {"sigma_v": 0.5}
 
 
@@ -183,6 +185,28 @@ def test_recorded_plots_without_truth_are_compared_with_themselves(tmp_path):
         found.save(tmp_path / "x.yaml")
 
 
+def test_several_sources_are_tuned_on_together():
+    found = ft.tune(["report", "mixed"], "kalman-cv", runs=12, trials=6, folds=2)
+    assert found.data == "report, mixed"
+    tracker, errors = make_tracker("kalman-cv:sigma_v=0.5"), []
+    for name in ("report", "mixed"):
+        data = tuner.simulated(tuner.load_scenario(name), 12, 0)
+        squares = []
+        for track in data.tracks:
+            predicted = tracker.run(track.time, track.plots, track.sigma).predicted
+            assert track.start == (8 if name == "mixed" else 2)
+            squares.append(((predicted - track.truth)[track.start :] ** 2).sum(axis=1))
+        errors.append(math.sqrt(np.concatenate(squares).mean()))
+    # In these scenarios σ/T² is 1.
+    assert found.start == {"sigma_v": 0.5}
+    assert found.rows[0].held_out == pytest.approx(math.sqrt(math.prod(errors)))
+    with pytest.raises(ValueError, match="data: at least one file or scenario is needed"):
+        ft.tune([], "fixed")
+    bare = random_walk(3, 100, 0.5)
+    with pytest.raises(ValueError, match=r"random walk and mixed cannot .* differ in their number"):
+        ft.tune([bare, "mixed"], "fixed", runs=12)
+
+
 def test_numbers_that_make_no_tracker_are_refused():
     data = random_walk(4, 70, 0.5)
     run = Trials(data, tuner.make_folds(data, 2, 0), RmsError(), compiled=False)
@@ -196,8 +220,9 @@ def test_the_change_is_that_of_paired_errors():
     rng = np.random.default_rng(2)
     other = rng.gamma(3.0, 1.0, 400)
     tuned = 0.81 * other * np.exp(rng.normal(0, 0.1, 400))
-    plots = np.full(400, 7)
-    middle, low, high = RmsError().change(tuned, other, plots)
+    units = np.arange(400)
+    folds = Folds("tracks", (), units % 2, np.full(400, 7), 0 * units)
+    middle, low, high = RmsError().compare(tuned, other, folds)
     assert middle == pytest.approx(math.sqrt(tuned.sum() / other.sum()) - 1, rel=1e-12)
     # Brute force: the bootstrap.
     draws = rng.integers(0, 400, (4000, 400))
@@ -205,12 +230,34 @@ def test_the_change_is_that_of_paired_errors():
     assert (low, high) == pytest.approx(tuple(np.quantile(ratios, [0.025, 0.975])), abs=0.001)
     nothing = np.full(400, np.inf)
     for name, least in (("rms", -1.0), ("likelihood", -math.inf)):
-        assert CRITERIA[name].change(tuned, nothing, plots) == (least, least, least)
-        assert CRITERIA[name].change(nothing, other, plots)[0] == math.inf
-    middle, low, high = CRITERIA["likelihood"].change(tuned, other, plots)
+        assert CRITERIA[name].compare(tuned, nothing, folds) == (least, least, least)
+        assert CRITERIA[name].compare(nothing, other, folds)[0] == math.inf
+    middle, low, high = CRITERIA["likelihood"].compare(tuned, other, folds)
     means = (tuned - other)[draws].mean(axis=1) / 7
     assert middle == pytest.approx((tuned - other).mean() / 7)
     assert (low, high) == pytest.approx(tuple(np.quantile(means, [0.025, 0.975])), abs=0.002)
+
+
+def test_groups_count_alike():
+    rng = np.random.default_rng(3)
+    group = np.repeat([0, 1], [300, 40])
+    other = np.where(group == 0, 1.0, 1e4) * rng.gamma(3.0, 1.0, 340)
+    tuned = np.where(group == 0, 0.5, 2.0) * other * np.exp(rng.normal(0, 0.3, 340))
+    folds = Folds("tracks", (), group, np.full(340, 5), group)
+
+    def ratio(a, b):
+        logs = [0.5 * np.log(a[m].sum() / b[m].sum()) for m in (slice(300), slice(300, None))]
+        return math.expm1(np.mean(logs))
+
+    middle, low, high = RmsError().compare(tuned, other, folds)
+    assert middle == pytest.approx(ratio(tuned, other))
+    draws = np.hstack([rng.integers(0, 300, (3000, 300)), rng.integers(300, 340, (3000, 40))])
+    ratios = [ratio(tuned[each], other[each]) for each in draws]
+    assert (low, high) == pytest.approx(tuple(np.quantile(ratios, [0.025, 0.975])), abs=0.006)
+    every = np.ones(340, dtype=bool)
+    assert RmsError().levels(other, folds, every) == pytest.approx(
+        0.25 * (np.log(other[:300].sum() / 1500) + np.log(other[300:].sum() / 200))
+    )
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
