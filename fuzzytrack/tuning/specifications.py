@@ -64,8 +64,9 @@ def _acceleration(start: float) -> FreeNumber:
 _GAIN = FreeNumber(0.5, 0.01, 1.0, "probability")
 _STAY = FreeNumber(0.95, 0.3, 0.9999, "probability")
 
-#: Numbers that are free unless a user says which, for each family.
-_FREE: dict[str, dict[str, FreeNumber]] = {
+#: Numbers that are free unless a user says which, for each family; None for those that begin at
+#: their default and are searched by factors.
+_FREE: dict[str, dict[str, FreeNumber | None]] = {
     "fixed": {"alpha": _GAIN, "beta": FreeNumber(0.3, 1e-3, 2.0)},
     KALATA: {_INDEX: FreeNumber(0.5, 1e-4, 1e3)},
     "fading-memory": {"xi": FreeNumber(0.6, 0.01, 0.99, "probability")},
@@ -83,7 +84,19 @@ _FREE: dict[str, dict[str, FreeNumber]] = {
         "quiet_stay": _STAY,
         "maneuver_stay": FreeNumber(0.9, 0.3, 0.9999, "probability"),
     },
+    "imm-two": dict.fromkeys(
+        ("straight_noise", "maneuver_noise", "retention", "begin_rate", "end_rate", "gap")
+    ),
+    "imm-three": dict.fromkeys(
+        (
+            *("straight_noise", "moderate_noise", "strong_noise"),
+            *("moderate_retention", "strong_retention"),
+            *("moderate_rate", "strong_rate", "weaken_rate", "end_rate", "gap"),
+        )
+    ),
 }
+# Numbers that are searched in a way of their own where a user names them.
+_NAMED = {"level": _acceleration(3.0)}
 
 
 def specification_families() -> tuple[str, ...]:
@@ -151,7 +164,7 @@ def specification(text: str, free: Collection[str] | None, unit: float) -> Speci
     choices = []
     for key, parameter in factory.items():
         given, default = options.get(key, ""), parameter.default
-        number = known.get(key)
+        number = known.get(key) or _NAMED.get(key)
         if number is None:
             start = float(given) if is_number(given) else default
             if isinstance(start, bool) or not isinstance(start, int | float) or not start > 0:

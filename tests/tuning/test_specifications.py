@@ -43,6 +43,12 @@ def test_any_number_can_be_free():
     assert kept.text((0.3,)) == "fixed:alpha=0.5:beta=0.3"
 
 
+def test_the_level_of_a_maneuver_begins_at_that_of_the_plots():
+    (parameter,) = specification("imm-two", ["level"], UNIT).space.parameters
+    assert parameter.start == pytest.approx(3 * UNIT)
+    assert specification("imm-two:level=2", ["level"], UNIT).text((4.0,)) == "imm-two:level=4.0"
+
+
 def test_kalata_is_a_fixed_pair_by_its_index():
     candidates = specification("kalata:tracking_index=0.2", None, UNIT)
     alpha, beta = kalata(0.7)
