@@ -83,9 +83,9 @@ def test_values_follow_the_annotations():
         (
             "fixed:alpha=.5",
             "needs beta; write it as :beta=...; parameters: alpha, beta, gamma=0.0, "
-            "start=two-point$",
+            "period=None, start=two-point$",
         ),
-        ("fixed:alfa=.5", r"did you mean 'alpha'\? allowed: alpha, beta, gamma, start$"),
+        ("fixed:alfa=.5", r"did you mean 'alpha'\? allowed: alpha, beta, gamma, period, start$"),
         ("fixed:alhpa=.5:beta=.2", "unknown parameter 'alhpa'; did you mean 'alpha'.*allowed"),
         ("fixed:alpha=a:beta=.2", "alpha must be a number, got 'a'"),
         ("fixed:alpha=1:alpha=1", "parameter 'alpha' is given twice"),
@@ -131,7 +131,7 @@ def test_annotations_for_type_checkers_only(monkeypatch):
 def test_everything_listed_has_a_name_parameters_and_package():
     entries = {(e.kind, e.name): e for e in catalog()}
     assert entries["rule base", "stiffness-damping"].parameters == (
-        "method=exact", "start=two-point")  # fmt: skip
+        "method=exact", "period=None", "start=two-point")  # fmt: skip
     assert entries["scheduler", "fixed"].parameters[:3] == ("alpha", "beta", "gamma=0.0")
     assert entries["scheduler", "fixed"].package == "fuzzytrack"
     assert "Llinas" in entries["tracker", "alpha-beta"].source
