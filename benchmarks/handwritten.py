@@ -2,9 +2,10 @@
 
 Each loop knows its one filter, and is written as fast as we can. It has no acceleration, no checks
 and no results but the predictions; the fuzzy one has its rule base worked out by hand. Missed
-plots, irregular times and the two-point start are in. Blocks of tracks stay in the first cache with
-time outermost; once all tracks of a block have started, a shorter step does the rest. It reads the
-plots and writes the predictions where they are, in the widest vectors there are.
+plots, irregular times and the two-point start are in: the time step of a track is the time since
+its last plot. Blocks of tracks stay in the first cache with time outermost; once all tracks of a
+block have started, a shorter step does the rest. It reads the plots and writes the predictions
+where they are, in the widest vectors there are.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ __all__ = ["bare", "fixed", "fuzzy", "vectorized"]
 Array = NDArray[np.float64]
 
 BLOCK = 240
-# Where in its buffer a block has position, velocity, last plot, previous error, and, until all its
-# tracks have started, the time since the last plot and the number of plots up to 2.
-V, LAST, ERROR, GAP, PLOTS, SIZE = (k * BLOCK for k in range(1, 7))
+# Where in its buffer a block has position, velocity, last plot and its time, previous error, and,
+# until all its tracks have started, the number of plots up to 2.
+V, LAST, TIME, ERROR, PLOTS, SIZE = (k * BLOCK for k in range(1, 7))
 
 _inline = numba.njit(error_model="numpy", forceinline=True)
 _loop = numba.njit(error_model="numpy", nogil=True, cache=True)
@@ -106,46 +107,46 @@ def _fuzzy_terms(e, change, before):
 
 
 @_inline
-def _start(b, i, z, dt):
+def _start(b, i, z, t):
     """A plot of a track that has not seen two before: position, velocity, and the count."""
-    plots, last, gap = b[PLOTS + i], b[LAST + i], b[GAP + i] + dt
+    plots, last = b[PLOTS + i], b[LAST + i]
     if z == z:
-        b[i] = z
-        b[V + i] = (z - last) / gap if plots == 1.0 else 0.0
-        b[LAST + i] = z
+        b[V + i] = (z - last) / (t - b[TIME + i]) if plots == 1.0 else 0.0
+        b[i] = b[LAST + i] = z
+        b[TIME + i] = t
         b[PLOTS + i] = plots + 1.0
-        gap = 0.0
-    b[GAP + i] = gap
 
 
-# A missed plot is an innovation of 0, which corrects nothing.
+# A missed plot changes nothing.
 @_loop
-def _fixed_step(b, dt, alpha, beta, plots, predicted):
+def _fixed_step(b, t, alpha, beta, plots, predicted):
     _wide()
-    per_dt = beta / dt
     for i in range(min(len(plots), BLOCK)):
-        z, v = plots[i], b[V + i]
-        prediction = b[i] + v * dt
-        e = z - prediction if z == z else 0.0
-        b[i] = prediction + alpha * e
-        b[V + i] = v + per_dt * e
+        z, x, v, last = plots[i], b[i], b[V + i], b[TIME + i]
+        seen, dt = z == z, t - last
+        prediction = x + v * dt
+        e = z - prediction
+        b[i] = prediction + alpha * e if seen else x
+        b[V + i] = v + beta / dt * e if seen else v
+        b[TIME + i] = t if seen else last
         predicted[i] = prediction
 
 
 @_loop
-def _fuzzy_step(b, dt, plots, predicted):
+def _fuzzy_step(b, t, plots, predicted):
     _wide()
-    per_dt = 1.0 / dt
     for i in range(min(len(plots), BLOCK)):
-        z, v, last, before = plots[i], b[V + i], b[LAST + i], b[ERROR + i]
-        seen = z == z
-        prediction = b[i] + v * dt
+        z, x, v, since = plots[i], b[i], b[V + i], b[TIME + i]
+        last, before = b[LAST + i], b[ERROR + i]
+        seen, dt = z == z, t - since
+        prediction = x + v * dt
         e = z - prediction if seen else 0.0
         change = z - last if seen else 0.0
         x_term, v_term, error = _fuzzy_terms(e, change, before)
-        b[i] = prediction + x_term
-        b[V + i] = v + per_dt * v_term
+        b[i] = prediction + x_term if seen else x
+        b[V + i] = v + v_term / dt if seen else v
         b[LAST + i] = z if seen else last
+        b[TIME + i] = t if seen else since
         b[ERROR + i] = error if seen else before
         predicted[i] = prediction
 
@@ -165,43 +166,45 @@ def _bare_step(b, dt, alpha, beta, plots, predicted):
 
 # The first steps of a block, one track after the other; whether all have started.
 @_loop
-def _fixed_first(b, dt, alpha, beta, plots, predicted):
+def _fixed_first(b, t, alpha, beta, plots, predicted):
     started = True
     for i in range(len(plots)):
-        z, prediction = plots[i], b[i] + b[V + i] * dt
+        z, dt = plots[i], t - b[TIME + i]
         if b[PLOTS + i] < 2.0:
             predicted[i] = np.nan
-            _start(b, i, z, dt)
+            _start(b, i, z, t)
             started = started & (b[PLOTS + i] >= 2.0)
             continue
-        e = z - prediction if z == z else 0.0
-        b[i] = prediction + alpha * e
-        b[V + i] += beta / dt * e
-        predicted[i] = prediction
+        predicted[i] = prediction = b[i] + b[V + i] * dt
+        if z == z:
+            e = z - prediction
+            b[i] = prediction + alpha * e
+            b[V + i] += beta / dt * e
+            b[TIME + i] = t
     return started
 
 
 @_loop
-def _fuzzy_first(b, dt, plots, predicted):
+def _fuzzy_first(b, t, plots, predicted):
     started = True
     for i in range(len(plots)):
-        z, prediction = plots[i], b[i] + b[V + i] * dt
+        z, dt = plots[i], t - b[TIME + i]
         if b[PLOTS + i] < 2.0:
             predicted[i] = np.nan
-            _start(b, i, z, dt)
+            _start(b, i, z, t)
             started = started & (b[PLOTS + i] >= 2.0)
             continue
-        b[i] = predicted[i] = prediction
+        predicted[i] = prediction = b[i] + b[V + i] * dt
         if z == z:
             x_term, v_term, error = _fuzzy_terms(z - prediction, z - b[LAST + i], b[ERROR + i])
             b[i] = prediction + x_term
             b[V + i] += v_term / dt
-            b[LAST + i], b[ERROR + i] = z, error
+            b[LAST + i], b[TIME + i], b[ERROR + i] = z, t, error
     return started
 
 
 @_loop
-def _fixed(b, dts, plots, predicted, alpha, beta):
+def _fixed(b, times, plots, predicted, alpha, beta):
     steps, tracks = plots.shape
     for first in range(0, tracks, BLOCK):
         last = min(first + BLOCK, tracks)
@@ -210,13 +213,13 @@ def _fixed(b, dts, plots, predicted, alpha, beta):
         for k in range(steps):
             z, into = plots[k, first:last], predicted[k, first:last]
             if started:
-                _fixed_step(b, dts[k], alpha, beta, z, into)
+                _fixed_step(b, times[k], alpha, beta, z, into)
             else:
-                started = _fixed_first(b, dts[k], alpha, beta, z, into)
+                started = _fixed_first(b, times[k], alpha, beta, z, into)
 
 
 @_loop
-def _fuzzy(b, dts, plots, predicted):
+def _fuzzy(b, times, plots, predicted):
     steps, tracks = plots.shape
     for first in range(0, tracks, BLOCK):
         last = min(first + BLOCK, tracks)
@@ -225,9 +228,9 @@ def _fuzzy(b, dts, plots, predicted):
         for k in range(steps):
             z, into = plots[k, first:last], predicted[k, first:last]
             if started:
-                _fuzzy_step(b, dts[k], z, into)
+                _fuzzy_step(b, times[k], z, into)
             else:
-                started = _fuzzy_first(b, dts[k], z, into)
+                started = _fuzzy_first(b, times[k], z, into)
 
 
 @_loop
@@ -248,7 +251,7 @@ def _steps(times: Array) -> Array:
 def fixed(times: Array, plots: Array, alpha: float, beta: float) -> Array:
     """Predictions with fixed gains; plots of shape (n_steps, n_tracks)."""
     predicted = np.empty_like(plots)
-    _fixed(aligned(SIZE), _steps(times), plots, predicted, alpha, beta)
+    _fixed(aligned(SIZE), times, plots, predicted, alpha, beta)
     return predicted
 
 
@@ -262,7 +265,7 @@ def bare(times: Array, plots: Array, alpha: float, beta: float) -> Array:
 def fuzzy(times: Array, plots: Array) -> Array:
     """Predictions with the gains of the rule base stiffness-damping, exact."""
     predicted = np.empty_like(plots)
-    _fuzzy(aligned(SIZE), _steps(times), plots, predicted)
+    _fuzzy(aligned(SIZE), times, plots, predicted)
     return predicted
 
 

@@ -90,16 +90,16 @@ def _loop(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work:
     fresh = core.fresh(tracks).reshape(-1)
     lanes, nothing = fresh.copy(), np.empty(0)
     outputs = (predicted, *(nothing for _ in OUTPUTS[1:]))
-    dts = np.diff(times, prepend=times[0])
-    code = (core.step_code().address, core.steady_code(False).address, False)
-    buffer, scratch = aligned(core.rows.total * BLOCK), np.empty(BLOCK)
-    # One time step and one sigma for all tracks.
-    given = (plots.reshape(-1), dts, np.full(1, np.nan), (1, 0), (0, 0, 0), lanes, outputs)
-    run, places = block_loop.compiled_run(), block_loop.layout(core.rows)
+    steady = (core.steady_code(False, common).address for common in (True, False))
+    code = (core.step_code().address, *steady, False, core.elapsed)
+    room = core.room(np.float64)
+    # One time and one sigma for all tracks.
+    given = (plots.reshape(-1), times, np.full(1, np.nan), (1, 0), (0, 0, 0), lanes, outputs)
+    run, places = block_loop.compiled_run(), core.places
 
     def work() -> None:
         lanes[:] = fresh
-        run(*code, *places, buffer, scratch, steps, tracks, 0, tracks, *given)
+        run(*code, *places, *room, steps, tracks, 0, tracks, *given)
 
     return work
 
@@ -107,7 +107,7 @@ def _loop(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work:
 def _steps(tracker: Any, plots: Array) -> Work:
     """The steady step of one block over and over, as many updates as the plots have."""
     core = runner(tracker, 1)
-    steady, buffer = core.steady_code(False).address, aligned(core.rows.total * BLOCK)
+    steady, buffer = core.steady_code(False, True).address, aligned(core.rows.total * BLOCK)
     # Tracks that stand at 0 and have seen two plots.
     buffer[core.rows.plots * BLOCK : (core.rows.plots + 1) * BLOCK] = 2.0
     few = aligned(ROUND * BLOCK)

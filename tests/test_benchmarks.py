@@ -144,7 +144,7 @@ def test_the_steady_step_alone_tracks():
 
     core = runner(work.fixed_tracker(), 1)
     buffer, predicted = aligned(core.rows.total * BLOCK), aligned(BLOCK)
-    steady = core.steady_code(False).address
+    steady = core.steady_code(False, True).address
     profile._go_round(steady, buffer, np.full(profile.ROUND * BLOCK, 8.0), predicted, 1)
     # Position and velocity from 0 toward a plot at 8 that stays, one second a step.
     x = v = 0.0

@@ -28,8 +28,9 @@ class Rows:
 
     A lane is what gets its own gains: one axis of one track, or with a coupled scheduler the whole
     track. Row `r` of lane `i` is ``buffer[r * stride + i]``. The first `state` rows are the state
-    of a track, those up to `kept` the results of its last step; then come plot, sigma and dt of the
-    step, and scratch.
+    of a track at `last_time`, those up to `kept` the results of its last step; then come plot,
+    sigma and dt of the step, and scratch. A step uses neither `last_time` nor the rows from `now`
+    on: the loops that call it keep them.
 
     Attributes
     ----------
@@ -68,7 +69,7 @@ class Rows:
 
     @property
     def gap(self) -> int:
-        """Time since the last plot (s); 0 where the tracker does not use it."""
+        """Time from the last plot to that of the state (s); 0 where the tracker does not use it."""
         return 4 * self.n_axes
 
     @property
@@ -102,9 +103,27 @@ class Rows:
         return self.state + 2 * self.n_axes
 
     @property
-    def kept(self) -> int:
-        """Number of rows kept from step to step: state and results."""
+    def results(self) -> int:
+        """Number of rows that a step writes: state and results."""
         return self.state + 2 * self.n_axes + 3
+
+    @property
+    def now(self) -> int:
+        """First of 3 `n_axes` rows of position, velocity and acceleration at the last step.
+
+        They differ from those of the state where the plot of that step was missed.
+        """
+        return self.results
+
+    @property
+    def last_time(self) -> int:
+        """Time (s) to which the state belongs; NaN before the first plot."""
+        return self.results + 3 * self.n_axes
+
+    @property
+    def kept(self) -> int:
+        """Number of rows kept from step to step."""
+        return self.last_time + 1
 
     @property
     def plot(self) -> int:
@@ -121,7 +140,10 @@ class Rows:
 
     @property
     def dt(self) -> int:
-        """Time step (s), filled in before a step."""
+        """Time from that of the state to the step (s), filled in before a step.
+
+        0 if there has been no plot.
+        """
         return self.kept + 2 * self.n_axes
 
     @property
@@ -142,10 +164,15 @@ class Rows:
         return self.given + self.scratch.index(name)
 
     def output(self, name: str) -> int:
-        """First row of an output, by its name in a result."""
+        """First row where a step writes an output, by its name in a result."""
         if name in GAINS:
             return self.gains + GAINS.index(name)
         return int(getattr(self, "position" if name == "filtered" else name))
+
+    def shown(self, name: str) -> int:
+        """First row of an output after a step, among those that are kept."""
+        row = self.output(name)
+        return row if row >= self.predicted else self.now + row
 
 
 def aligned(count: int, dtype: type = np.float64) -> NDArray[Any]:

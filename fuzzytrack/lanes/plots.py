@@ -64,12 +64,12 @@ class PlotLayout:
         full = np.broadcast_to(values, (len(values), *self.shape[1:]))
         return full.reshape(len(values), self.lanes, self.lane_axes)
 
-    def times_to_lanes(self, dts: Array) -> Array:
-        """Time steps, common or each track's own, shape (n_steps, lanes or 1)."""
-        if dts.ndim == 1:
-            return dts[:, None]
-        tracks = math.prod(dts.shape[1:])
-        return np.repeat(dts.reshape(len(dts), tracks), self.lanes // max(tracks, 1), axis=1)
+    def times_to_lanes(self, times: Array) -> Array:
+        """Times, common or each track's own, shape (n_steps, lanes or 1)."""
+        if times.ndim == 1:
+            return times[:, None]
+        tracks = math.prod(times.shape[1:])
+        return np.repeat(times.reshape(len(times), tracks), self.lanes // max(tracks, 1), axis=1)
 
     def from_lanes(self, values: Array) -> Array:
         """Output of a run, shape (n_steps, lanes[, axes]), in the shape of the plots."""

@@ -27,6 +27,8 @@ __all__ = ["InfinitePlotError", "Runner"]
 COMPILE_ABOVE = 200_000
 #: Number of coordinates of a job from which several threads save time.
 THREADS_ABOVE = 500_000
+#: Number of lanes that are looked at for missing plots.
+_SAMPLE = 64
 #: Parts of a job for each thread: more than one, since parts do not take equally long.
 PARTS = 4
 
@@ -48,16 +50,20 @@ class Runner:
     Attributes
     ----------
     program : LaneProgram
+    elapsed : bool
+        Whether time counts from the last plot: what a step writes where a plot is missing is given
+        out, and the state remains that of the last plot. Otherwise it counts from step to step.
     work : int
         Number of coordinates tracked so far.
     horizon : int
         What `work` will be after the jobs that were announced.
     common_step, own_step : callable or None
         After `compile`, `fuzzytrack.lanes.block_loop.compiled_one_step` from its argument `b` on:
-        with one time step and sigma for all lanes, and with those of each track and plot.
+        with one time and sigma for all lanes, and with those of each track and plot.
     """
 
     program: LaneProgram
+    elapsed: bool = True
     work: int = 0
     horizon: int = 0
     common_step: Callable[..., int] | None = field(default=None, init=False, repr=False)
@@ -66,7 +72,7 @@ class Runner:
     _compiler: Compiler = field(default_factory=lambda: entry_point, init=False, repr=False)
 
     def __repr__(self) -> str:
-        return summary(self, "program", "work", "horizon")
+        return summary(self, "program", "elapsed", "work", "horizon")
 
     @property
     def rows(self) -> Rows:
@@ -75,16 +81,23 @@ class Runner:
 
     def fresh(self, count: int) -> Array:
         """Lanes before their first plot, shape (rows.kept, count)."""
-        lanes = np.zeros((self.rows.kept, count))
-        lanes[: self.rows.velocity] = np.nan
-        lanes[self.rows.memory : self.rows.state] = np.reshape(self.program.memory, (-1, 1))
+        rows, lanes = self.rows, np.zeros((self.rows.kept, count))
+        for first in (rows.position, rows.now):
+            lanes[first : first + rows.n_axes] = np.nan
+        lanes[rows.last_time] = np.nan
+        lanes[rows.memory : rows.state] = np.reshape(self.program.memory, (-1, 1))
         return lanes
+
+    @property
+    def restored(self) -> int:
+        """How many rows, the first ones, are as before after a step without a plot."""
+        return self.rows.state if self.elapsed and not self.program.keeps_state else 0
 
     def __call__(
         self,
         lanes: Array | None,
         plots: NDArray[Any],
-        dts: Array,
+        times: Array,
         sigmas: Array,
         native: bool | None = None,
         keep: Sequence[str] = OUTPUTS,
@@ -98,7 +111,8 @@ class Runner:
             None for lanes before their first plot.
         plots : ndarray, shape (n_steps, lanes, n_axes)
             Its dtype, float64 or float32, is that of the calculation.
-        dts : ndarray, shape (n_steps, lanes or 1)
+        times : ndarray, shape (n_steps, lanes or 1)
+            Times (s), later than those of the lanes.
         sigmas : ndarray of three axes that broadcasts with `plots`
         native : bool, optional
             Whether to run compiled; unless given, in single precision, or once the jobs together
@@ -128,11 +142,11 @@ class Runner:
         self.work += plots.size
         after = self.fresh(plots.shape[1]) if lanes is None else np.array(lanes, order="C")
         if native:
-            return self._run_compiled(after, plots, dts, sigmas, keep, threads)
-        return self._run_plain(after, plots, dts, sigmas, keep)
+            return self._run_compiled(after, plots, times, sigmas, keep, threads)
+        return self._run_plain(after, plots, times, sigmas, keep)
 
     def step(
-        self, lanes: Array, plots: Array, dts: list[float], sigmas: list[list[float]]
+        self, lanes: Array, plots: Array, times: list[float], sigmas: list[list[float]]
     ) -> Array:
         """One step in plain Python.
 
@@ -140,7 +154,7 @@ class Runner:
         ----------
         lanes : ndarray, shape (rows.kept, lanes)
         plots : ndarray, shape (lanes, n_axes)
-        dts : list of float
+        times : list of float
             One for each lane.
         sigmas : list of list of float
             For each lane one for each axis.
@@ -150,48 +164,68 @@ class Runner:
         ndarray
             The lanes after the step.
         """
-        step, kept, scratch = self._plain_step, self.rows.kept, [0.0] * len(self.rows.scratch)
+        kept, scratch = self.rows.kept, [0.0] * (self.rows.total - self.rows.kept)
         after = []
-        for lane, z, sigma, dt in zip(lanes.T.tolist(), plots.tolist(), sigmas, dts, strict=True):
-            b = [*lane, *z, *sigma, dt, *scratch]
-            step(b, 1)
+        for lane, z, sigma, t in zip(lanes.T.tolist(), plots.tolist(), sigmas, times, strict=True):
+            b = lane + scratch
+            self._plain_step(b, t, [*z, *sigma])
             after.append(b[:kept])
         return np.ascontiguousarray(np.array(after).reshape(len(after), kept).T)
 
     @cached_property
-    def _plain_step(self) -> Callable[[Any, int], None]:
-        return self.program.step(1)
+    def _plain_step(self) -> Callable[[list[float], float, list[float]], None]:
+        """Function ``f(b, t, given)``: one step of a lane to time `t`, in place.
+
+        `given` are plot and sigma.
+        """
+        step, rows, restored = self.program.step(1), self.rows, self.restored
+        plot_row, dt_row, last_time, n_axes = rows.plot, rows.dt, rows.last_time, rows.n_axes
+        now, end = slice(rows.now, rows.last_time), 3 * rows.n_axes
+        elapsed, shows = self.elapsed, not self.program.keeps_state
+
+        def plain_step(b: list[float], t: float, given: list[float]) -> None:
+            b[plot_row:dt_row] = given
+            dt = t - b[last_time]
+            b[dt_row] = dt if dt == dt else 0.0
+            before = b[:restored]
+            step(b, 1)
+            if shows:
+                b[now] = b[:end]
+            seen = True
+            for z in given[:n_axes]:
+                seen = seen and z == z
+            if seen or not elapsed:
+                b[last_time] = t
+            else:
+                b[:restored] = before
+
+        return plain_step
 
     def _run_plain(
-        self, after: Array, plots: Array, dts: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
+        self, after: Array, plots: Array, times: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
     ) -> tuple[Array, dict[str, Array]]:
         if np.isinf(plots).any():
             raise InfinitePlotError
         step, rows = self._plain_step, self.rows
         n_steps, count, _ = plots.shape
-        # In the order of the rows: plot, sigma, time step.
-        all_dts = np.broadcast_to(dts[:, :, None], (n_steps, count, 1))
-        given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape), all_dts], axis=2)
+        all_times = np.broadcast_to(times, (n_steps, count)).T.tolist()
+        given = np.concatenate([plots, np.broadcast_to(sigmas, plots.shape)], axis=2)
         # Looked up once: this is the inner loop of a small job.
-        n_state, n_kept, results = rows.last_plot, rows.kept, slice(rows.predicted, rows.kept)
-        told, scratch = slice(rows.plot, rows.given), [0.0] * (rows.total - rows.kept)
-        trace = np.empty((n_steps, count, n_state + n_kept - rows.predicted))
+        n_kept, results = rows.kept, slice(rows.predicted, rows.last_time)
+        scratch = [0.0] * (rows.total - n_kept)
+        trace = np.empty((n_steps, count, rows.last_time - rows.predicted))
         for lane in range(count):
             b = after[:, lane].tolist() + scratch
             history = []
-            for row in given[:, lane].tolist():
-                b[told] = row
-                step(b, 1)
-                history.append(b[:n_state] + b[results])
+            for t, row in zip(all_times[lane], given[:, lane].tolist(), strict=True):
+                step(b, t, row)
+                history.append(b[results])
             if history:
                 trace[:, lane] = history
                 after[:, lane] = b[:n_kept]
-        # The trace does not have the rows between state and results.
-        skipped = rows.predicted - n_state
         outputs = {}
         for name in keep:
-            row = rows.output(name)
-            column = row if row < n_state else row - skipped
+            column = rows.shown(name) - rows.predicted
             part = trace[:, :, column : column + rows.n_axes]
             outputs[name] = trace[:, :, column].copy() if name in GAINS else part.copy()
         return after, outputs
@@ -200,39 +234,71 @@ class Runner:
         self,
         after: Array,
         plots: NDArray[Any],
-        dts: Array,
+        times: Array,
         sigmas: Array,
         keep: Sequence[str] = OUTPUTS,
         threads: int | None = None,
     ) -> tuple[Array, dict[str, NDArray[Any]]]:
         from fuzzytrack.lanes import block_loop
 
-        (n_steps, count, n_axes), dtype = plots.shape, plots.dtype.type
+        (n_steps, count, _), dtype = plots.shape, plots.dtype.type
         shapes = {name: plots.shape[:2] if name in GAINS else plots.shape for name in keep}
         outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
         unwanted = np.empty(0, dtype)
-        inputs = [_in_a_row(array, dtype) for array in (plots, dts, sigmas)]
         given = (
-            *inputs, _strides(dts.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
+            _in_a_row(plots, dtype), _in_a_row(times, np.float64), _in_a_row(sigmas, dtype),
+            _strides(times.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
             after.reshape(-1),
             tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
         )  # fmt: skip
-        results = bool({*keep} & {"innovation", *GAINS})
+        results = self._writes_results(keep)
         # A single step is never steady, so a stream of plots does not wait for its compilation.
-        steady = self.steady_code(results, dtype) if n_steps > 1 else None
+        steady = [0, 0]
+        if n_steps > 1:
+            # A few lanes show whether they lack plots; the loop can do without their function.
+            missing = self.elapsed and bool(np.isnan(plots[:, :_SAMPLE]).any())
+            for k in range(1 + (missing or times.shape[1] > 1)):
+                code = self.steady_code(results, k == 0, dtype)
+                steady[k] = 0 if code is None else code.address
         step = self.step_code(dtype)
-        run, places = block_loop.compiled_run(), block_loop.layout(self.rows)
-        code = (step.address, 0 if steady is None else steady.address, results)
+        run = block_loop.compiled_run()
+        code = (step.address, *steady, results, self.elapsed)
+        places = self.places
 
         def part(ends: tuple[int, int]) -> int:
-            buffer = aligned(self.rows.total * BLOCK, dtype)
-            scratch = np.empty(n_axes * BLOCK, dtype)
-            return run(*code, *places, buffer, scratch, n_steps, count, *ends, *given)
+            return run(*code, *places, *self.room(dtype), n_steps, count, *ends, *given)
 
         infinite = _in_parts(part, count, _threads(threads, plots.size))
         if infinite:
             raise InfinitePlotError
         return after, outputs
+
+    @property
+    def places(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Numbers and positions of the rows of a lane, and of its outputs, for the loops."""
+        rows, keeps = self.rows, self.program.keeps_state
+        places = (
+            rows.n_axes, rows.state, rows.results, rows.now if keeps else rows.position, rows.now,
+            rows.last_time, self.restored, rows.plot, rows.sigma, rows.dt, rows.plots,
+        )  # fmt: skip
+        return places, tuple((rows.shown if keeps else rows.output)(name) for name in OUTPUTS)
+
+    def _writes_results(self, keep: Sequence[str]) -> bool:
+        """Whether the steady function has to write results into the buffer for some outputs."""
+        in_state = () if self.program.keeps_state else ("filtered", "velocity", "acceleration")
+        return bool({*keep} - {"predicted", *in_state})
+
+    def room(self, dtype: type) -> tuple[NDArray[Any], ...]:
+        """Arrays that the compiled loop works in, for one thread.
+
+        They hold a block of lanes, predictions that nobody wants, times of the lanes, places of
+        lanes without a plot, and their states.
+        """
+        return (
+            aligned(self.rows.total * BLOCK, dtype), np.empty(self.rows.n_axes * BLOCK, dtype),
+            np.empty(BLOCK), np.empty(BLOCK, np.int64),
+            np.empty(self.rows.state * BLOCK, dtype),
+        )  # fmt: skip
 
     @property
     def native(self) -> bool:
@@ -247,19 +313,20 @@ class Runner:
         n_axes = self.rows.n_axes
         lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
         for results in (True, False):
-            self.steady_code(results)
+            self.steady_code(results, True)
         self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], (), 1)
         self.common_step = self._one_step(1.0)
         self.own_step = self._one_step(np.ones(1))
 
     def _one_step(self, ones: float | Array) -> Callable[..., int]:
-        """Compiled step of all lanes, for time steps and sigmas of the type of `ones`."""
+        """Compiled step of all lanes, for times and sigmas of the type of `ones`."""
         from fuzzytrack.lanes import block_loop
 
         rows, lanes, plots = self.rows, self.fresh(1), np.ones(self.rows.n_axes)
         one_step: Any = block_loop.compiled_one_step(isinstance(ones, np.ndarray))
-        places = (self.step_code().address, rows.n_axes, rows.state, rows.kept, rows.plot)
-        one_step(*places, aligned(rows.total * BLOCK), lanes, plots, ones, ones, lanes)
+        places = (self.step_code().address, self.elapsed, self.places[0])
+        room = (aligned(rows.total * BLOCK), np.empty(BLOCK, np.int64))
+        one_step(*places, *room, lanes, plots, ones, ones, self.fresh(1))
         # The one signature there is, without asking again which it is.
         return partial(one_step.overloads[one_step.signatures[0]].entry_point, *places)
 
@@ -267,12 +334,16 @@ class Runner:
         """Compiled step of the program, see `fuzzytrack.kernels.compile.entry_point`."""
         return self._compiled_once(("step", dtype), lambda: self.program.step(BLOCK), "vpi")
 
-    def steady_code(self, results: bool, dtype: type = np.float64) -> Any:
-        """Compiled steady function, with or without results; None if there is none."""
+    def steady_code(self, results: bool, common: bool, dtype: type = np.float64) -> Any:
+        """Compiled steady function, with or without results, for one dt or for each lane its own.
+
+        None if there is none.
+        """
         steady = self.program.steady
         if steady is None:
             return None
-        return self._compiled_once((results, dtype), lambda: steady(BLOCK, results), "vpixpp")
+        key = ((results, common), dtype)
+        return self._compiled_once(key, lambda: steady(BLOCK, results, common), "vpixpp")
 
     def _compiled_once(
         self, key: tuple[object, type], make: Callable[[], Callable[..., Any]], arguments: str

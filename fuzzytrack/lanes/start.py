@@ -20,8 +20,8 @@ from typing import Any
 from fuzzytrack.lanes.layout import Rows
 
 __all__ = [
-    "CORRECT_RETURNS", "CORRECT_TAKES", "axis_end", "axis_results", "begin_step", "lane_end",
-    "single_axis_step", "velocity_before",
+    "CORRECT_RETURNS", "CORRECT_TAKES", "axis_end", "axis_results", "axis_shown", "begin_step",
+    "lane_end", "single_axis_step", "velocity_before",
 ]  # fmt: skip
 
 #: What `single_axis_step` calls a tracker's own arithmetic with, and what it needs of it.
@@ -113,6 +113,32 @@ def axis_results(rows: Rows, stride: int) -> Callable[..., None]:
     return write
 
 
+def axis_shown(rows: Rows, stride: int) -> Callable[..., None]:
+    """Function that writes what is shown of an axis, for a program that keeps its state.
+
+    Parameters
+    ----------
+    rows : Rows
+        Layout of a lane.
+    stride : int
+        Numbers between rows.
+
+    Returns
+    -------
+    callable
+        ``show(buffer, at, x, v, a)`` with `at` as for `axis_results`.
+    """
+    n_axes, now = rows.n_axes, rows.now
+    x_row, v_row, a_row = (row * stride for row in (now, now + n_axes, now + 2 * n_axes))
+
+    def show(b: Any, at: int, x: float, v: float, a: float) -> None:
+        b[x_row + at] = x
+        b[v_row + at] = v
+        b[a_row + at] = a
+
+    return show
+
+
 def axis_end(rows: Rows, stride: int, *, results: bool = True) -> Callable[..., None]:
     """Function that ends the step of an axis: position, last plot, prediction and innovation.
 
@@ -150,7 +176,7 @@ def axis_end(rows: Rows, stride: int, *, results: bool = True) -> Callable[..., 
 
 def lane_end(
     rows: Rows, stride: int, *, two_point: bool = True, keep_gap: bool = True,
-    settled: bool = False, results: bool = True,
+    count_gap: bool = True, settled: bool = False, results: bool = True,
 ) -> Callable[..., None]:  # fmt: skip
     """Function that ends the step of a lane: number of plots, time since the last one, and gains.
 
@@ -164,6 +190,8 @@ def lane_end(
         Whether a track is running after its second plot; otherwise after its first one.
     keep_gap : bool
         Whether the time since the last plot is kept for a running track; otherwise it is then 0.
+    count_gap : bool
+        Whether it is kept at all; not by a program that keeps its state, whose dt it is.
     settled : bool
         Whether number of plots and time are known to stay as they are.
     results : bool
@@ -188,8 +216,9 @@ def lane_end(
             counted = plots + 1.0 if plots > 0.0 else first_count
             counted = counted if counted < 2.0 else 2.0
             b[plots_row + i] = counted if seen else plots
-            unused = seen if keep_gap else seen | running
-            b[gap_row + i] = 0.0 if unused else gap
+            if count_gap:
+                unused = seen if keep_gap else seen | running
+                b[gap_row + i] = 0.0 if unused else gap
         if results:
             update = seen & running
             b[gains_row + i] = alpha if update else nan

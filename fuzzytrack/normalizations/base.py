@@ -29,7 +29,7 @@ class Normalization(ABC):
         Paper, or other origin.
     signals : tuple of str
         What the kernel returns, in order; a rule base takes its inputs from them, first to first.
-    coupled, needs_sigma, sees_every_step : bool
+    coupled, needs_sigma, sees_starts, sees_misses : bool
     variance_start : str or None
         As for a `fuzzytrack.schedulers.base.GainScheduler`.
 
@@ -39,15 +39,16 @@ class Normalization(ABC):
     of a rule base.
 
     If the rule base opens with a growing memory, a normalization is called with zeros at the first
-    plot of a track, and at the second if velocity starts from it, even if it does not see every
-    step.
+    plot of a track, and at the second if velocity starts from it, even if it does not see
+    starts.
     """
 
     source: ClassVar[str] = ""
     signals: ClassVar[tuple[str, ...]] = ()
     coupled: ClassVar[bool] = False
     needs_sigma: ClassVar[bool] = False
-    sees_every_step: ClassVar[bool] = False
+    sees_starts: ClassVar[bool] = False
+    sees_misses: ClassVar[bool] = False
     variance_start: ClassVar[str | None] = None
 
     @abstractmethod
@@ -62,7 +63,7 @@ class Normalization(ABC):
         """Scalar function from the gains that were chosen to the memory; None unless overridden.
 
         It is called after inference, with the memory that the kernel returned and the gains for the
-        same plot; at steps whose gains are dropped too, if the normalization sees every step.
+        same plot; at steps whose gains are dropped too, if the normalization sees them.
         """
         return None
 

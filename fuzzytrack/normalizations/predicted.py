@@ -42,7 +42,7 @@ class Predicted(Normalization):
         "change of that",
     )
     needs_sigma: ClassVar[bool] = True
-    sees_every_step: ClassVar[bool] = True
+    sees_starts: ClassVar[bool] = True
     variance_start: ClassVar[str | None] = "two-point"
 
     def initial_memory(self, n_axes: int) -> Memory:

@@ -138,9 +138,10 @@ def _predicted(tracker: Tracker, time: Array, z: Array, sigma: Array) -> Array:
         return tracker.run(time, z, sigma).predicted
     core = runner(tracker, 1)
     lanes = z.reshape(len(z), -1, 1)
-    dts = np.diff(time, prepend=time[0])[:, None]
     native = True if z.shape[1] >= _COMPILED_RUNS else None
-    outputs = core(core.fresh(lanes.shape[1]), lanes, dts, np.full((1, 1, 1), np.nan), native)[1]
+    outputs = core(
+        core.fresh(lanes.shape[1]), lanes, time[:, None], np.full((1, 1, 1), np.nan), native
+    )[1]
     return outputs["predicted"].reshape(z.shape)
 
 

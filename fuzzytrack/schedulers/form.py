@@ -87,7 +87,7 @@ def answer_mistake(answer: Any, n_memory: int) -> str | None:
         Numbers in the memory that the kernel was given.
     """
     if not isinstance(answer, tuple) or len(answer) != 5:
-        return f"must return (alpha, beta, gamma, phi, memory), got {answer!r}"
+        return f"must return (alpha, beta, gamma, retention, memory), got {answer!r}"
     memory = answer[4]
     if not isinstance(memory, tuple):
         return f"must return its memory as a tuple, got {memory!r}"

@@ -120,9 +120,14 @@ class FuzzyScheduler(GainScheduler):
         return self.normalization.needs_sigma
 
     @property
-    def sees_every_step(self) -> bool:  # type: ignore[override]
-        """Whether all steps of a track are followed: for the normalization, or to count plots."""
-        return self.opens or self.normalization.sees_every_step
+    def sees_starts(self) -> bool:  # type: ignore[override]
+        """Whether the first plots of a track are followed: for the normalization, or to count."""
+        return self.opens or self.normalization.sees_starts
+
+    @property
+    def sees_misses(self) -> bool:  # type: ignore[override]
+        """Whether missed plots are followed; from the normalization."""
+        return self.normalization.sees_misses
 
     @property
     def variance_start(self) -> str | None:  # type: ignore[override]
@@ -178,7 +183,7 @@ class FuzzyScheduler(GainScheduler):
             return schedule
 
         is_seen = _is_seen_on_all_axes if self.coupled else _is_seen
-        every_step = self.normalization.sees_every_step
+        every_step = self.normalization.sees_starts or self.normalization.sees_misses
 
         def open_and_schedule(
             innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory

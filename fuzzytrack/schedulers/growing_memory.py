@@ -55,7 +55,7 @@ class GrowingMemory(GainScheduler):
     """
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M2, Eqs. 24a-24b"
-    sees_every_step = True
+    sees_starts = True
     uses_acceleration = False
 
     limit: float | None = None

@@ -92,7 +92,7 @@ class InnovationScheduler(GainScheduler):
 
     source: ClassVar[str] = "Kim & Lee, adaptive alpha-beta tracker, Eqs. 5-17"
     needs_sigma = True
-    sees_every_step = True
+    sees_starts = True
     uses_acceleration = False
 
     sigma_d: float = 15.0

@@ -48,7 +48,7 @@ class KalmanCA(GainScheduler):
     """
 
     source: ClassVar[str] = "Njonjo et al. (2017), the Kalman filter compared with"
-    sees_every_step = True
+    sees_starts = True
 
     sigma_v: float
     acceleration_sigma: float

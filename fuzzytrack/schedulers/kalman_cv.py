@@ -65,7 +65,7 @@ class KalmanCV(GainScheduler):
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), Kalman filter decoupled by axes"
-    sees_every_step = True
+    sees_starts = True
     uses_acceleration = False
 
     sigma_v: float

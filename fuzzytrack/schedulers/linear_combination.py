@@ -42,7 +42,7 @@ class LinearCombination(GainScheduler):
     """
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M3, Eq. 25"
-    sees_every_step = True
+    sees_starts = True
     uses_acceleration = False
 
     alpha: float = 0.05
@@ -71,7 +71,7 @@ class LinearCombination(GainScheduler):
         def linear_combination(
             innovation: Any, change: Any, dt: float, sigma: float, memory: Memory
         ) -> tuple[float, float, float, float, Memory]:
-            alpha, beta, gamma, phi, count = growing(innovation, change, dt, sigma, memory)
-            return alpha, added + kept * beta, gamma, phi, count
+            alpha, beta, gamma, retention, count = growing(innovation, change, dt, sigma, memory)
+            return alpha, added + kept * beta, gamma, retention, count
 
         return linear_combination

@@ -58,7 +58,8 @@ class QualityGains(GainScheduler):
     """
 
     source: ClassVar[str] = "Zhang & Jiang, quality factor; cap 10 (published: 30)"
-    sees_every_step = True
+    sees_starts = True
+    sees_misses = True
     uses_acceleration = False
 
     cap: float = 10.0

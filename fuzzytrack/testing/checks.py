@@ -103,8 +103,8 @@ def check_scheduler(scheduler: GainScheduler, seed: int = 0) -> None:
     Checked are: immutability (equal hash and answers after pickling), what the kernel is written
     with, memory and gains of the right form at ordinary and extreme innovations, gains that keep
     the filter stable, and, through an `fuzzytrack.AlphaBetaTracker` with either start, all that
-    `check_tracker` checks; compiled with one start, since a kernel is compiled in the same way for
-    the other.
+    `check_tracker` checks; compiled, and with rows left out, with one start, since a kernel is
+    compiled in the same way for the other.
 
     Parameters
     ----------
@@ -133,7 +133,8 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     `fuzzytrack.trackers.covariance.track_covariance` where that has the same model, pickling of the
     state in the middle of a track, determinism, that inputs are left alone, that bad input raises
     ValueError, and of a `fuzzytrack.trackers.LaneTracker` that it is a value, what its step is
-    written with, and that it gives the same to the last bit when compiled.
+    written with, that it gives the same to the last bit when compiled, and that rows without a plot
+    give the same as rows left out, unless it counts them or has ``missed="step"``.
 
     Parameters
     ----------

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from types import FunctionType
 from typing import Any
 
+from fuzzytrack.gains.singer import fade
 from fuzzytrack.gains.stability import in_closed_region
 from fuzzytrack.schedulers.base import GainScheduler, Memory
 from fuzzytrack.schedulers.form import answer_mistake, checked_kernel, checked_memory
@@ -18,6 +19,7 @@ from fuzzytrack.testing.tracker_checks import (
     compiled_equals_plain,
     equals_pickled_copy,
     hashable,
+    rows_left_out,
 )
 from fuzzytrack.trackers.alpha_beta import STARTS, AlphaBetaTracker
 
@@ -45,16 +47,25 @@ def kernel_uses_numbers_only(scheduler: GainScheduler, seed: int) -> None:
 
 
 def kernel_answers_in_form(scheduler: GainScheduler, seed: int) -> None:
-    """The kernel returns finite gains and a memory of the same length, and nothing else counts."""
+    """The kernel returns finite gains and a memory of the same length, and nothing else counts.
+
+    A retention time that is used may be infinite.
+    """
     kernel, memory = _kernel(scheduler), checked_memory(scheduler, _axes(scheduler))
     for where, arguments in _sample_arguments(scheduler):
         answer = _answer(kernel, where, arguments, memory)
         mistake = answer_mistake(answer, len(memory))
         expect(mistake is None, f"{where}: {mistake}")
-        numbers = (*answer[:4], *answer[4])
+        numbers = (*answer[:3], *answer[4])
         expect(
             all(isinstance(n, float) and math.isfinite(n) for n in numbers),
             f"{where}: gains and memory must be finite floats, got {answer}",
+        )
+        retention = answer[3]
+        expect(
+            isinstance(retention, float) and (retention > 0.0 or not scheduler.uses_retention),
+            f"{where}: retention must be a float, and a time > 0 if uses_retention is set, got "
+            f"{retention!r}",
         )
         expect(
             answer[2] == 0.0 or scheduler.uses_acceleration,
@@ -80,7 +91,8 @@ def gains_are_stable(scheduler: GainScheduler, seed: int) -> None:
     later = started
     for where, arguments in _sample_arguments(scheduler):
         for memory in (started, later):
-            alpha, beta, gamma, phi, after = _answer(kernel, where, arguments, memory)
+            alpha, beta, gamma, retention, after = _answer(kernel, where, arguments, memory)
+            phi = fade(_DT / retention) if scheduler.uses_retention else 1.0
             expect(
                 bool(in_closed_region(alpha, beta, gamma, phi)),
                 f"{where}: alpha = {alpha:g}, beta = {beta:g}, gamma = {gamma:g}, phi = {phi:g} "
@@ -103,6 +115,11 @@ def pickled_copy_gives_the_same_gains(scheduler: GainScheduler, seed: int) -> No
 def compiled(scheduler: GainScheduler, seed: int) -> None:
     """See `compiled_equals_plain`."""
     compiled_equals_plain(AlphaBetaTracker(scheduler), seed)
+
+
+def left_out(scheduler: GainScheduler, seed: int) -> None:
+    """See `rows_left_out`."""
+    rows_left_out(AlphaBetaTracker(scheduler), seed)
 
 
 def _with_either_start(promise: Callable[[Any, int], None]) -> Callable[[Any, int], None]:
@@ -150,7 +167,7 @@ def _sample_arguments(scheduler: GainScheduler) -> Iterator[tuple[str, tuple[Any
 def _started(scheduler: GainScheduler) -> Memory:
     """Memory of a track that has been started from two plots."""
     memory = checked_memory(scheduler, _axes(scheduler))
-    if scheduler.sees_every_step:
+    if scheduler.sees_starts or scheduler.sees_misses:
         for _ in range(2):
             memory = _kernel(scheduler)(*_arguments(scheduler, 0.0, 0.0), memory)[4]
     return memory
@@ -167,4 +184,5 @@ SCHEDULER_CHECKS: dict[str, Callable[[Any, int], None]] = {
     **{name: _with_either_start(promise) for name, promise in TRACKER_CHECKS.items()},
     "pickled-copy-gives-same-gains": pickled_copy_gives_the_same_gains,
     "compiled-equals-plain": compiled,
+    "rows-left-out": left_out,
 }

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from fuzzytrack.arrays import Mask
+from fuzzytrack.lanes.runner import Runner
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.testing.kernel_words import foreign_word
 from fuzzytrack.testing.prediction_checks import (
@@ -34,6 +36,7 @@ __all__ = [
     "compiled_equals_plain",
     "equals_pickled_copy",
     "hashable",
+    "rows_left_out",
 ]
 
 
@@ -167,19 +170,58 @@ def compiled_equals_plain(tracker: LaneTracker, seed: int) -> None:
     n_axes = AXES if tracker.coupled else 1
     core = runner(tracker, n_axes)
     lanes = plots.reshape(STEPS, -1, n_axes)
-    dts = np.diff(times, prepend=times[0])[:, None]
+    together, apart = times[:, None], np.repeat(times[:, None], lanes.shape[1], axis=1)
     sigmas = np.full((1, 1, 1), SIGMA)
     fresh = core.fresh(lanes.shape[1])
-    plain_state, plain = core(fresh, lanes, dts, sigmas, native=False)
-    own_dts = np.repeat(dts, lanes.shape[1], axis=1)
+    plain_state, plain = core(fresh, lanes, together, sigmas, native=False)
     # Together and each by itself, a track may take other ways through the code.
-    for steps in (dts, own_dts):
-        native_state, native = core(fresh, lanes, steps, sigmas, native=True)
+    for given in (together, apart):
+        native_state, native = core(fresh, lanes, given, sigmas, native=True)
         expect_same(plain, native, "compiled code must equal plain Python to the last bit")
         expect(
             np.array_equal(plain_state, native_state, equal_nan=True),
             "compiled code must leave the same state as plain Python",
         )
+
+
+def rows_left_out(tracker: LaneTracker, seed: int) -> None:
+    """Rows without a plot and rows left out give the same numbers, unless time goes by steps.
+
+    A tracker that counts missed plots is the exception.
+    """
+    if tracker.missed != "elapsed" or tracker.sees_misses:
+        return
+    times, plots = sample_plots(seed)
+    n_axes = AXES if tracker.coupled else 1
+    core = runner(tracker, n_axes)
+    lanes, sigmas = plots.reshape(STEPS, -1, n_axes), np.full((1, 1, 1), SIGMA)
+    seen: Mask = ~np.isnan(lanes).any(axis=2)
+    for native, dtype in ((False, np.float64), (True, np.float64), (True, np.float32)):
+        given = lanes.astype(dtype)
+        if dtype == np.float32 and not _fits(core, dtype):
+            continue
+        state, whole = core(None, given, times[:, None], sigmas, native)
+        for lane in range(lanes.shape[1]):
+            rows = seen[:, lane]
+            one = given[rows, lane : lane + 1]
+            own_state, alone = core(None, one, times[rows, None], sigmas, native)
+            part = {name: array[rows, lane] for name, array in whole.items()}
+            own = {name: array[:, 0] for name, array in alone.items()}
+            expect_same(part, own, "rows without a plot must give the numbers of rows left out")
+            kept = slice(0, core.rows.state)
+            expect(
+                np.array_equal(state[kept, lane], own_state[kept, 0]),
+                "rows without a plot must leave the state as it is",
+            )
+
+
+def _fits(core: Runner, dtype: type) -> bool:
+    """Whether a tracker works with numbers that a type has."""
+    try:
+        core.step_code(dtype)
+    except ValueError:
+        return False
+    return True
 
 
 #: Checks of every tracker, by name.
@@ -202,4 +244,5 @@ LANE_CHECKS: dict[str, Callable[[Any, int], None]] = {
     "program-uses-numbers-only": program_uses_numbers_only,
     **TRACKER_CHECKS,
     "compiled-equals-plain": compiled_equals_plain,
+    "rows-left-out": rows_left_out,
 }

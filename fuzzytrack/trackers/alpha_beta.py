@@ -12,9 +12,9 @@ from fuzzytrack.reprs import constructor_code
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.schedulers.catalog import as_scheduler
 from fuzzytrack.schedulers.form import check_answer, checked_kernel, checked_memory
-from fuzzytrack.trackers.alpha_beta_step import steady_function, step_function
+from fuzzytrack.trackers.alpha_beta_step import StepWay, steady_function, step_function
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 
 __all__ = ["STARTS", "AlphaBetaTracker"]
 
@@ -36,20 +36,25 @@ class AlphaBetaTracker(LaneTracker):
         ``two-point`` takes position from the second plot and velocity from the first two (as in the
         papers: predictions begin with the third plot). ``one-point`` takes position from the first
         plot with velocity 0, and uses the scheduler from the second plot on.
+    missed : {"elapsed", "step"}
+        What T is after missed plots: the time since the last plot, or since the last step, see
+        `fuzzytrack.trackers.lane_tracker.LaneTracker`.
 
     Raises
     ------
     TypeError
         If `scheduler` is neither.
     ValueError
-        If `start` is unknown, or the text names no scheduler.
+        If `start` or `missed` is unknown, or the text names no scheduler.
 
     Notes
     -----
-    Llinas et al. (1998), Eqs. 2.1 to 2.6 and 2.35 to 2.39. A plot that is NaN was missed: the track
-    coasts on its prediction. The velocity correction is (β/T)·e with the T of the step, also after
-    missed plots, while the change of observation that a scheduler sees spans the whole gap. Times
-    may be irregular. For a coupled scheduler a plot with any coordinate missing is missed.
+    Llinas et al. (1998), Eqs. 2.1 to 2.6 and 2.35 to 2.39. A plot that is NaN was missed: the
+    results there are the prediction. The velocity correction is (β/T)·e with the time T since the
+    last plot, so that steps without a plot, and steps left out, give the same track. With
+    ``missed="step"``, as in the papers, T is that of the step, also after missed plots; the change
+    of observation that a scheduler sees spans the whole gap in any case. Times may be irregular.
+    For a coupled scheduler a plot with any coordinate missing is missed.
 
     Examples
     --------
@@ -63,12 +68,17 @@ class AlphaBetaTracker(LaneTracker):
 
     scheduler: GainScheduler
     start_mode: str = "two-point"
+    missed: str = "elapsed"
 
-    def __init__(self, scheduler: GainScheduler | str, start: str = "two-point") -> None:
+    def __init__(
+        self, scheduler: GainScheduler | str, start: str = "two-point", missed: str = "elapsed"
+    ) -> None:
         if start not in STARTS:
             raise ValueError(f"start: unknown {start!r}; one of {', '.join(STARTS)}")
+        check_missed(missed)
         object.__setattr__(self, "scheduler", as_scheduler(scheduler))
         object.__setattr__(self, "start_mode", start)
+        object.__setattr__(self, "missed", missed)
 
     def __repr__(self) -> str:
         return constructor_code(self, start_mode="start")
@@ -84,6 +94,11 @@ class AlphaBetaTracker(LaneTracker):
         return self.scheduler.needs_sigma
 
     @property
+    def sees_misses(self) -> bool:  # type: ignore[override]
+        """Whether missed plots change the memory; from the scheduler."""
+        return self.scheduler.sees_misses
+
+    @property
     def sigma_w(self) -> float | None:  # type: ignore[override]
         """Standard deviation of all plots (m), if the scheduler has one."""
         return self.scheduler.sigma_w
@@ -95,15 +110,19 @@ class AlphaBetaTracker(LaneTracker):
 
     def program(self, n_axes: int) -> LaneProgram:
         """The α-β-γ recursion with the scheduler's gains; see `LaneTracker.program`."""
-        scheduler, two_point = self.scheduler, self.start_mode == "two-point"
+        scheduler = self.scheduler
         checked_kernel(scheduler, n_axes)
         memory = checked_memory(scheduler, n_axes)
+        if scheduler.uses_retention:
+            memory = (*memory, math.inf)
         rows = Rows(n_axes, len(memory))
+        way = StepWay(scheduler, self.start_mode == "two-point", self.missed == "elapsed")
         return LaneProgram(
             rows,
             memory,
-            lambda stride: step_function(scheduler, rows, two_point, stride),
-            lambda stride, results: steady_function(scheduler, rows, stride, results),
+            lambda stride: step_function(way, rows, stride),
+            lambda stride, *kind: steady_function(way, rows, stride, *kind),
+            keeps_state=way.elapsed,
         )
 
     def _check_form(self, n_axes: int) -> None:
@@ -115,4 +134,5 @@ class AlphaBetaTracker(LaneTracker):
         if self.scheduler.variance_start not in (None, self.start_mode):
             # The scheduler's covariance is that of a track which started otherwise.
             return math.nan
-        return self.scheduler.prediction_variance(memory, dt)
+        own = memory[:-1] if self.scheduler.uses_retention else memory
+        return self.scheduler.prediction_variance(own, dt)

@@ -2,9 +2,13 @@
 
 ::
 
-    predict   x⁻ = x + v·T + a·T²/2        v⁻ = v + a·T        a⁻ = a
+    predict   a⁻ = φ·a   φ = fade(T/τ)    x⁻ = x + v·T + a⁻·T²/2    v⁻ = v + a⁻·T
     correct   e = z − x⁻
-              x = x⁻ + α·e                 v = v⁻ + (β/T)·e    a = φ·(a⁻ + (γ/(2T²))·e)
+              x = x⁻ + α·e                v = v⁻ + (β/T)·e          a = a⁻ + (γ/(2T²))·e
+
+The retention time τ is that of the last plot, from a scheduler that sets one; otherwise φ is 1 and
+not computed. T is the time from that of the state: its last plot, or with ``missed="step"`` its
+last step.
 
 `_advance` makes the function that does this for one lane. The same source runs in plain Python
 over a list, for streaming and small jobs, and compiled over arrays, for batches, with the same
@@ -17,19 +21,46 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
+from fuzzytrack.gains.singer import fade
 from fuzzytrack.kernels.language import (
     own_numbers,
     promise_independent_turns,
     use_wide_vectors,
 )
 from fuzzytrack.lanes.layout import Rows
-from fuzzytrack.lanes.start import axis_end, begin_step, lane_end, velocity_before
+from fuzzytrack.lanes.start import (
+    axis_results,
+    axis_shown,
+    begin_step,
+    lane_end,
+    velocity_before,
+)
 from fuzzytrack.lanes.tuples import gather, scatter
 from fuzzytrack.schedulers.base import GainScheduler
 
-__all__ = ["steady_function", "step_function"]
+__all__ = ["StepWay", "steady_function", "step_function"]
+
+
+@dataclass(frozen=True, eq=False)
+class StepWay:
+    """What decides how the steps of an α-β-γ filter are done.
+
+    Attributes
+    ----------
+    scheduler : GainScheduler
+    two_point : bool
+        Whether velocity starts from the first two plots; otherwise it starts at 0, and the
+        scheduler corrects it from the second plot on.
+    elapsed : bool
+        Whether a missed plot leaves the state as it was.
+    """
+
+    scheduler: GainScheduler
+    two_point: bool
+    elapsed: bool
 
 
 def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., Any]:
@@ -40,7 +71,7 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
     n_axes = rows.n_axes
     kernel = scheduler.kernel(n_axes)
     last_row, sigma_row = rows.last_plot * stride, rows.sigma * stride
-    missed_sigma = math.inf if scheduler.sees_every_step else 1.0
+    missed_sigma = math.inf if _follows(scheduler) else 1.0
     if not scheduler.coupled:
 
         def alone(
@@ -72,29 +103,40 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
     return together
 
 
+def _follows(scheduler: GainScheduler) -> bool:
+    """Whether a scheduler's memory is kept at steps that need no gains."""
+    return scheduler.sees_starts or scheduler.sees_misses
+
+
 def _advance(
-    scheduler: GainScheduler, rows: Rows, two_point: bool, stride: int, settled: bool, results: bool
+    way: StepWay, rows: Rows, stride: int, settled: bool, results: bool
 ) -> Callable[[Any, int, Any, float, float], None]:
     """Function that takes lane `i` one step of length `dt` on, after so many plots.
 
     `own` are numbers of the lane for this step: plots, predictions, innovations, and room for the
     arguments of a coupled kernel, each of all axes.
     """
-    n_axes, n_memory = rows.n_axes, rows.n_memory
+    scheduler, elapsed = way.scheduler, way.elapsed
+    n_axes, fades = rows.n_axes, scheduler.uses_retention
+    # The retention time follows the memory of the scheduler.
+    n_memory = rows.n_memory - fades
     call = _caller(scheduler, rows, stride)
     remembered, remember = gather(n_memory, stride), scatter(n_memory, stride)
-    end_axis = axis_end(rows, stride, results=results)
+    write_results, show = axis_results(rows, stride), axis_shown(rows, stride)
     # The time since the last plot is used at the second plot only.
     end_lane = lane_end(
-        rows, stride, two_point=two_point, keep_gap=False, settled=settled, results=results
-    )
+        rows, stride, two_point=way.two_point, keep_gap=False, count_gap=not elapsed,
+        settled=settled, results=results,
+    )  # fmt: skip
     x_row, v_row, a_row, last_row, gap_row, memory_row = (
         row * stride
         for row in (
             rows.position, rows.velocity, rows.acceleration, rows.last_plot, rows.gap, rows.memory
         )
     )  # fmt: skip
-    every_step = scheduler.sees_every_step
+    retention_row = memory_row + n_memory * stride
+    every_step = _follows(scheduler)
+    follows_misses = scheduler.sees_misses if elapsed else every_step
     accelerating = scheduler.uses_acceleration
 
     def advance(b: Any, i: int, own: Any, dt: float, plots: float) -> None:
@@ -106,35 +148,54 @@ def _advance(
         rate = 1.0 / dt
         # Whether the kernel is given the plot's sigma, and whether its memory is kept.
         told = update | (seen & every_step)
-        kept = told | ((plots > 0.0) & every_step)
+        kept = told | ((plots > 0.0) & (not seen) & follows_misses)
 
+        phi = fade(dt / b[retention_row + i]) if fades else 1.0
         for j in range(n_axes):
             at = j * stride + i
             prediction = b[x_row + at] + b[v_row + at] * dt
             if accelerating:
-                prediction = prediction + b[a_row + at] * (0.5 * dt * dt)
+                a = phi * b[a_row + at] if fades else b[a_row + at]
+                prediction = prediction + a * (0.5 * dt * dt)
             own[n_axes + j] = prediction
             own[2 * n_axes + j] = own[j] - prediction if update else 0.0
 
         memory = remembered(b, memory_row + i)
-        alpha, beta, gamma, phi, memory = call(b, i, own, dt, update, told, memory)
+        alpha, beta, gamma, retention, memory = call(b, i, own, dt, update, told, memory)
 
         for j in range(n_axes):
             at = j * stride + i
-            last, v = b[last_row + at], b[v_row + at]
+            last, x_last, v_last, a_last = (
+                b[last_row + at], b[x_row + at], b[v_row + at], b[a_row + at]
+            )  # fmt: skip
             z, prediction, e = own[j], own[n_axes + j], own[2 * n_axes + j]
+            v, a = v_last, 0.0
             if accelerating:
-                a = b[a_row + at]
+                a = phi * a_last if fades else a_last
                 v = v + a * dt
-                a_new = phi * (a + (gamma * (0.5 * rate * rate)) * e) if running else 0.0
-                b[a_row + at] = a_new if seen else a
+                a_new = a + (gamma * (0.5 * rate * rate)) * e if running else 0.0
+                a = a_new if seen else a
+            v = velocity_before(plots, v, z, last, gap, seen)
+            v = v + (beta * rate) * e if update else v
+            x = prediction + alpha * e if running else z
+            x = x if seen else prediction
+            # A missed plot leaves the state as it was.
+            follows_time = seen | (not elapsed)
+            b[x_row + at] = x if follows_time else x_last
+            b[v_row + at] = v if follows_time else v_last
+            if accelerating:
+                b[a_row + at] = a if follows_time else a_last
             elif not settled:
                 b[a_row + at] = 0.0
-            v = velocity_before(plots, v, z, last, gap, seen)
-            b[v_row + at] = v + (beta * rate) * e if update else v
-            end_axis(b, at, z, last, prediction, prediction + alpha * e, e, seen, running)
+            b[last_row + at] = z if seen else last
+            if results:
+                write_results(b, at, prediction, e, seen, running)
+                if elapsed:
+                    show(b, at, x, v, a)
 
         remember(b, memory_row + i, memory, kept)
+        if fades:
+            b[retention_row + i] = retention if told else b[retention_row + i]
         end_lane(b, i, plots, gap, seen, alpha, beta, gamma)
 
     return advance
@@ -157,23 +218,18 @@ def _no_promise() -> None:
     """Do nothing: lanes of several axes are not independent, they share their `own_numbers`."""
 
 
-def step_function(
-    scheduler: GainScheduler, rows: Rows, two_point: bool, stride: int
-) -> Callable[[Any, int], None]:
+def step_function(way: StepWay, rows: Rows, stride: int) -> Callable[[Any, int], None]:
     """Function that does one time step of the first lanes of a buffer, in place.
 
     Parameters
     ----------
-    scheduler : GainScheduler
+    way : StepWay
     rows : Rows
         Layout of the buffer: row `r` of lane `i` is at ``r * stride + i``.
-    two_point : bool
-        Whether velocity starts from the first two plots; otherwise it starts at 0, and the
-        scheduler corrects it from the second plot on.
     stride : int
         Numbers between rows.
     """
-    advance = _advance(scheduler, rows, two_point, stride, settled=False, results=True)
+    advance = _advance(way, rows, stride, settled=False, results=True)
     n_axes, size = rows.n_axes, 5 * rows.n_axes
     plot_row, plots_row, dt_row = (row * stride for row in (rows.plot, rows.plots, rows.dt))
 
@@ -189,19 +245,22 @@ def step_function(
 
 
 def steady_function(
-    scheduler: GainScheduler, rows: Rows, stride: int, results: bool
+    way: StepWay, rows: Rows, stride: int, results: bool, common: bool
 ) -> Callable[[Any, int, float, Any, Any], None]:
-    """As `step_function`, for lanes that have all started and have their time step in common.
+    """As `step_function`, for lanes that have all started.
 
-    The compiler removes what is the same for all of them: divisions by the time step, and starts.
-    Plots are read from the arrays of the job, and predictions are written into its result.
+    The compiler removes what is the same for all of them: starts, and divisions by a time step that
+    they have in common. Plots are read from the arrays of the job, and predictions are written into
+    its result.
 
     Parameters
     ----------
-    scheduler, rows, stride
+    way, rows, stride
         As there.
     results : bool
         Whether to write the other results into the buffer.
+    common : bool
+        Whether the time step is the one that the function is given; otherwise that in the buffer.
 
     Returns
     -------
@@ -209,8 +268,9 @@ def steady_function(
         ``steady(buffer, count, dt, plots, predicted)``; the axes of a lane are side by side in
         `plots` and `predicted`.
     """
-    advance = _advance(scheduler, rows, True, stride, settled=True, results=results)
+    advance = _advance(way, rows, stride, settled=True, results=results)
     n_axes, size, last = rows.n_axes, 5 * rows.n_axes, rows.n_axes - 1
+    dt_row = rows.dt * stride
     promise = promise_independent_turns if n_axes == 1 else _no_promise
 
     def steady(b: Any, count: int, dt: float, plots: Any, predicted: Any) -> None:
@@ -218,7 +278,7 @@ def steady_function(
         own = own_numbers(size)
         for i in range(min(count, stride)):
             _take(own, n_axes, plots, i * n_axes, 1)
-            advance(b, i, own, dt, 2.0)
+            advance(b, i, own, dt if common else b[dt_row + i], 2.0)
             _give(own, n_axes, predicted, i * n_axes)
             predicted[i * n_axes + last] = own[n_axes + last]
         promise()

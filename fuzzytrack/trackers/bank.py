@@ -17,7 +17,7 @@ from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.start import single_axis_step
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["SELECTIONS", "ParallelBank"]
@@ -51,6 +51,8 @@ class ParallelBank(LaneTracker):
     forget : float
         Factor of the old score at each plot, 0 <= forget <= 1; ``last`` and ``hindsight`` do not
         use it.
+    missed : {"elapsed", "step"}
+        As for `fuzzytrack.AlphaBetaTracker`.
 
     Raises
     ------
@@ -80,8 +82,10 @@ class ParallelBank(LaneTracker):
     members: int = 10
     selection: str = "soft"
     forget: float = 0.9
+    missed: str = "elapsed"
 
     def __post_init__(self) -> None:
+        check_missed(self.missed)
         lowest, highest = (
             float(finite("lowest", self.lowest)),
             float(finite("highest", self.highest)),

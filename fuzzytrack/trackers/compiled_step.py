@@ -43,7 +43,7 @@ class CompiledStep:
         # Shapes of the plots and of the lanes of the last state.
         self._sizes: tuple[tuple[int, ...] | None, tuple[int, ...]] = (None, ())
         # Taken out while in use, so that threads do not share one.
-        self._buffers: list[NDArray[np.float64]] = []
+        self._room: list[tuple[NDArray[np.float64], NDArray[np.int64]]] = []
 
     def __call__(self, state: TrackState, z: Any, t: Any, sigma: Any) -> TrackState | None:
         """Next state; None if the arguments are not of the ordinary kind, or wrong."""
@@ -68,29 +68,29 @@ class CompiledStep:
             or (state.rows is not rows and state.rows != rows)
         ):
             return None
-        dt: Any
+        when: Any
         if common and type(time) is np.float64 and isinstance(t, _NUMBERS):
             t = np.float64(t)
-            dt, step = float(t - time), self._common_step
-            if not 0.0 < dt < math.inf:
+            if not 0.0 < t - time < math.inf:
                 return None
+            when, step = float(t), self._common_step
         else:
             given = _of_each(state, t, sigma, common)
             if given is None:
                 return None
-            (t, dt, sigma), step = given, self._own_step
+            (t, when, sigma), step = given, self._own_step
         try:
-            buffer = self._buffers.pop()
+            room = self._room.pop()
         except IndexError:
-            buffer = aligned(rows.total * BLOCK)
+            room = (aligned(rows.total * BLOCK), np.empty(BLOCK, np.int64))
         # The states of a stream share their shape; reading that of an array takes longer.
         sizes = self._sizes
         if sizes[0] is not shape:
             sizes = self._sizes = (shape, lanes.shape)
         after = np.empty(sizes[1])
         plots = z if len(shape) == 1 else z.reshape(-1)
-        bad = step(buffer, lanes, plots, dt, sigma, after)
-        self._buffers.append(buffer)
+        bad = step(*room, lanes, plots, when, sigma, after)
+        self._room.append(room)
         if bad:
             return None
         return TrackState.unchecked(t, shape, after, rows)
@@ -99,9 +99,9 @@ class CompiledStep:
 def _of_each(
     state: TrackState, t: Any, sigma: Any, common: bool
 ) -> tuple[Any, Array, Array] | None:
-    """Times, time steps of the tracks and sigmas of the plots, or one `common` sigma for all.
+    """Times, the same as an array, and sigmas of the plots, or one `common` sigma for all.
 
-    None where they are not simple; the time steps are left to be checked.
+    None where they are not simple, or a time is not later than that of its track.
     """
     time, shape = state.time, state.shape
     tracks = shape[:-1]
@@ -123,4 +123,7 @@ def _of_each(
             return None
     else:
         return None
-    return times, np.ascontiguousarray(times - time).reshape(-1), sigmas
+    steps = times - time
+    if not ((steps > 0.0) & (steps < math.inf)).all():
+        return None
+    return times, np.ascontiguousarray(times).reshape(-1), sigmas

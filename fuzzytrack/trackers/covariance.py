@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import nonnegative, number, within
 from fuzzytrack.reprs import summary
+from fuzzytrack.trackers.lane_tracker import check_missed
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["TrackCovariance", "track_covariance"]
@@ -53,6 +54,7 @@ def track_covariance(
     *,
     velocity_sigma: float | None = None,
     acceleration_sigma: float | None = None,
+    missed: str = "elapsed",
 ) -> TrackCovariance:
     """Exact covariance of the estimates of a tracker, for any gains.
 
@@ -72,6 +74,9 @@ def track_covariance(
     acceleration_sigma : float, optional
         Standard deviation of a new track's acceleration (m/s²), >= 0. Needed by a tracker with γ;
         if given for a tracker without γ, the target is modeled with acceleration too.
+    missed : {"elapsed", "step"}
+        That of the tracker, see `fuzzytrack.trackers.lane_tracker.LaneTracker`: the steps of the
+        model go from plot to plot, or from time to time.
 
     Returns
     -------
@@ -80,9 +85,9 @@ def track_covariance(
     Raises
     ------
     ValueError
-        If a standard deviation is out of its range, does not broadcast or is missing, the result
-        continues from a state or is in single precision, or its states do not follow from its
-        gains.
+        If `missed` is unknown, a standard deviation is out of its range, does not broadcast or is
+        missing, the result continues from a state or is in single precision, or its states do not
+        follow from its gains.
 
     Notes
     -----
@@ -106,6 +111,7 @@ def track_covariance(
     >>> found.nis.round(3)
     array([  nan,   nan, 0.   , 0.221])
     """
+    check_missed(missed)
     plots = result.measured
     if plots.dtype != np.float64:
         raise ValueError(f"result: its dtype must be float64, got {plots.dtype}; run in float64")
@@ -113,11 +119,12 @@ def track_covariance(
     noise = number("sigma_v", nonnegative("sigma_v", sigma_v))
     prior = _prior(velocity_sigma, acceleration_sigma, order)
     variances = _plot_variances(sigma, plots)
-    dts = _time_steps(result)
+    seen = _seen(result)
+    before, dts = _intervals(result, seen if missed == "elapsed" else np.ones_like(seen))
     used = ~np.isnan(result.innovation)
     gains = _gain_vectors(result, dts, used, order)
-    _check_recursion(result, dts, gains)
-    first, known = _begin(result, used, velocity_sigma, gains, dts)
+    _check_recursion(result, before, dts, gains)
+    first, known = _begin(result, seen, used, velocity_sigma, gains)
 
     predicted = np.full((*plots.shape, order, order), np.nan)
     filtered = predicted.copy()
@@ -125,6 +132,7 @@ def track_covariance(
     measures = np.eye(order)[0]
     for k in range(len(plots)):
         move, push = _model(dts[k], order)
+        last = p
         p = move @ p @ _turned(move) + noise**2 * _outer(push)
         predicted[k] = np.where(_wide(k > known), p, np.nan)
         rest = np.eye(order) - gains[k][..., :, None] * measures
@@ -134,6 +142,8 @@ def track_covariance(
         # The unknown velocity counts as 0 until two plots replace it: it drops out of what follows.
         p[..., 1, 1] = np.where((first == k) & (known > k), 0.0, p[..., 1, 1])
         filtered[k] = np.where(_wide(k >= known), p, np.nan)
+        if missed == "elapsed":
+            p = np.where(_wide(seen[k]), p, last)
 
     s = np.where(used, predicted[..., 0, 0] + variances, np.nan)
     nis, axes = _agreement(result.innovation, s)
@@ -176,10 +186,21 @@ def _plot_variances(sigma: ArrayLike, plots: Array) -> Array:
     return np.where(missed, 0.0, full) ** 2
 
 
-def _time_steps(result: TrackResult) -> Array:
-    """T of every step, broadcasting with the plots; 0 for the first."""
-    dts = np.diff(result.time, axis=0, prepend=result.time[:1])
-    return dts.reshape(dts.shape + (1,) * (result.measured.ndim - dts.ndim))
+def _times(result: TrackResult) -> Array:
+    """Times (s), shaped as the plots."""
+    t = result.time
+    return np.broadcast_to(
+        t.reshape(t.shape + (1,) * (result.measured.ndim - t.ndim)), result.measured.shape
+    )
+
+
+def _intervals(result: TrackResult, counts: Mask) -> tuple[NDArray[np.int_], Array]:
+    """Index of the last step before each that counts, the first one if none does, and T since."""
+    index = np.arange(len(counts)).reshape(-1, *(1,) * (counts.ndim - 1))
+    last = np.maximum.accumulate(np.where(counts, index, 0), axis=0)
+    before = np.concatenate([np.zeros_like(last[:1]), last[:-1]])
+    times = _times(result)
+    return before, times - np.take_along_axis(times, before, axis=0)
 
 
 def _gain_vectors(result: TrackResult, dts: Array, used: Mask, order: int) -> Array:
@@ -190,10 +211,15 @@ def _gain_vectors(result: TrackResult, dts: Array, used: Mask, order: int) -> Ar
     return np.where(used[..., None], np.stack(parts[:order], axis=-1), 0.0)
 
 
-def _check_recursion(result: TrackResult, dts: Array, gains: Array) -> None:
+def _check_recursion(
+    result: TrackResult, before: NDArray[np.int_], dts: Array, gains: Array
+) -> None:
     """Raise ValueError unless the states follow from the gains by the α-β(-γ) recursion."""
     t = dts[1:]
-    x, v, a = (s[:-1] for s in (result.filtered, result.velocity, result.acceleration))
+    x, v, a = (
+        np.take_along_axis(s, before[1:], axis=0)
+        for s in (result.filtered, result.velocity, result.acceleration)
+    )
     running = ~np.isnan(result.predicted[1:])
     e = np.nan_to_num(result.innovation[1:])
     k = np.concatenate([gains[1:], np.zeros((*gains[1:].shape[:-1], 1))], axis=-1)
@@ -212,14 +238,13 @@ def _check_recursion(result: TrackResult, dts: Array, gains: Array) -> None:
 
 
 def _begin(
-    result: TrackResult, used: Mask, velocity_sigma: float | None, gains: Array, dts: Array
+    result: TrackResult, seen: Mask, used: Mask, velocity_sigma: float | None, gains: Array
 ) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     """Steps of the first plot, and of that from which on velocity is known, for every axis.
 
     Where velocity comes from a second plot, its gain is written into `gains`. A step that never
     comes is n_steps.
     """
-    seen = _seen(result)
     steps = len(seen)
     first = _first(seen)
     index = np.arange(steps).reshape(-1, *(1,) * (seen.ndim - 1))
@@ -228,7 +253,9 @@ def _begin(
     # A one-point start predicts from the step after the first plot on.
     one_point = ((index == first + 1) & ~np.isnan(result.predicted)).any(axis=0)
     second = _first(seen & (index > first))
-    span = (dts * (index > first) * (index <= second)).sum(axis=0)
+    times, last = _times(result), max(steps - 1, 0)
+    ends = (np.take_along_axis(times, np.minimum(k, last)[None], axis=0) for k in (first, second))
+    span = np.subtract(*reversed([*ends]))[0] if steps else np.zeros(first.shape)
     meeting = (index == second) & (second < steps)
     # In a one-point start the second plot is the first correction.
     rate = gains[..., 1] * span

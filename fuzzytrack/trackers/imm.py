@@ -9,6 +9,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import nonnegative, number, positive, within
+from fuzzytrack.lanes.plots import PlotLayout
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.imm_step import (
@@ -21,7 +22,7 @@ from fuzzytrack.trackers.imm_step import (
     step_function,
     switched,
 )
-from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = ["MANEUVERS", "InteractingPair"]
@@ -70,6 +71,8 @@ class InteractingPair(LaneTracker):
     maneuver_start : float, optional
         Probability, 0 to 1, that a new track maneuvers; unless given, the stationary probability of
         the two models, or ½ if both of them are kept forever.
+    missed : {"elapsed", "step"}
+        As for `fuzzytrack.AlphaBetaTracker`.
 
     Raises
     ------
@@ -78,8 +81,9 @@ class InteractingPair(LaneTracker):
 
     Notes
     -----
-    Bar-Shalom, Li & Kirubarajan (2001), section 11.6.6. At a missed plot the models mix and
-    coast, and the probabilities change by the transitions between the models only. Irregular times
+    Bar-Shalom, Li & Kirubarajan (2001), section 11.6.6. Where a plot is missed the models mix and
+    coast, and the probabilities change by the transitions between the models only: once over the
+    whole gap, or with ``missed="step"`` at every step. Irregular times
     and a noise that varies from plot to plot are exact. Covariances are in Joseph form, one for
     each axis: the correlation between joint axes that mixing would cause is neglected. Before
     velocity is known, the models are neither mixed nor compared. No plot makes a probability less
@@ -120,8 +124,10 @@ class InteractingPair(LaneTracker):
     velocity_sigma: float | None = None
     acceleration_sigma: float | None = None
     maneuver_start: float | None = None
+    missed: str = "elapsed"
 
     def __post_init__(self) -> None:
+        check_missed(self.missed)
         if self.maneuver not in MANEUVERS:
             raise ValueError(f"maneuver: unknown {self.maneuver!r}; one of {', '.join(MANEUVERS)}")
         if self.acceleration_sigma is not None and self.maneuver != "ca":
@@ -221,9 +227,17 @@ class InteractingPair(LaneTracker):
         """
         self._check(state)
         rows = state.rows
-        variance: Array = _variance(*_unpacked(state.lanes[rows.memory : rows.state]))
+        memory = state.lanes[rows.memory : rows.state]
+        (times,) = PlotLayout.of((0, *state.shape), self.joint).times_to_lanes(
+            np.asarray(state.time)[None]
+        )
+        elapsed = times - state.lanes[rows.last_time]
+        variance: Array = np.where(
+            elapsed > 0.0, self.prediction_variance(memory, elapsed), _variance(*_unpacked(memory))
+        )
         seen = ~np.isnan(state.lanes[: rows.n_axes])
-        coasting, running = state.lanes[rows.gap] > 0.0, state.lanes[rows.plots] >= 2.0
+        coasting = (state.lanes[rows.gap] > 0.0) | (elapsed > 0.0)
+        running = state.lanes[rows.plots] >= 2.0
         known = seen & (running | ~coasting)
         return np.where(known, variance, np.nan).T.reshape(state.shape)
 

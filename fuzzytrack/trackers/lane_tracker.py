@@ -36,7 +36,12 @@ from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult, checked_keep
 from fuzzytrack.trackers.state import Gains, TrackState, check_rows
 
-__all__ = ["LaneTracker", "announce", "learn_code", "runner", "sharing_code"]
+__all__ = [
+    "MISSED", "LaneTracker", "announce", "check_missed", "learn_code", "runner", "sharing_code",
+]  # fmt: skip
+
+#: What `LaneTracker.missed` can be.
+MISSED = ("elapsed", "step")
 
 
 class LaneTracker(ABC):
@@ -52,13 +57,23 @@ class LaneTracker(ABC):
         Whether a lane is a whole track, and not one of its axes.
     needs_sigma : bool
         Whether plots need a standard deviation.
+    sees_misses : bool
+        Whether steps without a plot change its memory also with ``missed="elapsed"``, as those of
+        a tracker that counts them.
     sigma_w : float or None
         Standard deviation of all plots (m), if the tracker has one.
+    missed : {"elapsed", "step"}
+        What the time step dt is after missed plots. ``elapsed``: the time since the last plot of
+        the track. A missed plot does not change the track: it is predicted over the whole gap, as
+        if there had been no steps between. ``step``: the time since the last step, at which the
+        track may have coasted; so it is in the papers.
     """
 
     coupled: bool = False
     needs_sigma: bool = False
+    sees_misses: bool = False
     sigma_w: float | None = None
+    missed: str = "elapsed"
 
     def __repr__(self) -> str:
         return constructor_code(self)
@@ -133,17 +148,17 @@ class LaneTracker(ABC):
         layout = PlotLayout.of(plots.shape, self.coupled)
         core = runner(self, layout.lane_axes)
         _check_state(state, plots, core.rows, self.name)
-        dts = time_steps(times, plots.shape, before)
+        steps = time_steps(times, plots.shape, before)
         deviation = self._sigmas(sigma, plots)
         if plots.dtype == np.float32:
-            check_single_precision("t: a time step of", dts, times)
+            check_single_precision("t: a time step of", steps, times)
             check_single_precision("sigma:", deviation, plots)
         sigmas = layout.to_lanes(deviation)
         try:
             after, raw = core(
                 None if state is None else state.lanes,
                 layout.to_lanes(plots),
-                layout.times_to_lanes(dts),
+                layout.times_to_lanes(times),
                 sigmas,
                 keep=[part for name in wanted for part in (GAINS if name == "gains" else (name,))],
                 threads=threads,
@@ -256,9 +271,9 @@ class LaneTracker(ABC):
         Parameters
         ----------
         memory : ndarray, shape (n_memory, lanes)
-            Memories of lanes that have started, each after its last step.
-        dt : ndarray, shape (lanes,) or (1,)
-            Time since that step (s), > 0.
+            Memories of lanes that have started, each as its state holds it.
+        dt : ndarray, shape (lanes,)
+            Time since the last plot (s), > 0, or with ``missed="step"`` since the last step.
 
         Returns
         -------
@@ -311,19 +326,20 @@ class LaneTracker(ABC):
             raise infinite_plot(plots)
         core = runner(self, layout.lane_axes)
         _check_state(state, plots, core.rows, self.name)
-        dts = layout.times_to_lanes(time_steps(times, plots.shape, before))
+        time_steps(times, plots.shape, before)
+        lane_times = layout.times_to_lanes(times)
         deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
         sigmas = layout.to_lanes(self._sigmas(deviation, plots))
         shape = (layout.lanes, layout.lane_axes)
         lanes = core.fresh(layout.lanes) if state is None else state.lanes
         try:
             if core.native:
-                after, _ = core(lanes, plots.reshape(1, *shape), dts, sigmas, True, (), 1)
+                after, _ = core(lanes, plots.reshape(1, *shape), lane_times, sigmas, True, (), 1)
             else:
                 after = core.step(
                     lanes,
                     plots.reshape(shape),
-                    dts[0].tolist() * (layout.lanes if dts.shape[1] == 1 else 1),
+                    np.broadcast_to(lane_times[0], (layout.lanes,)).tolist(),
                     np.broadcast_to(sigmas[0], shape).tolist(),
                 )
         except Exception as error:
@@ -356,7 +372,8 @@ class LaneTracker(ABC):
     def _position_variance(self, state: TrackState, time: Array | np.float64) -> Array:
         """Variance of the position predicted for a later time, shaped as a plot."""
         layout, rows = PlotLayout.of((0, *state.shape), self.coupled), state.rows
-        (dts,) = layout.times_to_lanes(np.asarray(time - state.time)[None])
+        (times,) = layout.times_to_lanes(np.asarray(time)[None])
+        dts = times - state.lanes[rows.last_time]
         # Of lanes that have not started it may be anything.
         with np.errstate(over="ignore", invalid="ignore"):
             variance = self.prediction_variance(state.lanes[rows.memory : rows.state], dts)
@@ -416,7 +433,8 @@ def learn_code(tracker: object, n_axes: int, code: SharedCode) -> None:
         program = runner(tracker, n_axes if tracker.coupled else 1).program
         code.learn(program.step(BLOCK))
         if program.steady is not None:
-            code.learn(program.steady(BLOCK, False))
+            for common in (True, False):
+                code.learn(program.steady(BLOCK, False, common))
 
 
 @contextmanager
@@ -439,6 +457,12 @@ def sharing_code(tracker: object, n_axes: int, code: SharedCode) -> Iterator[Non
         yield
 
 
+def check_missed(missed: str) -> None:
+    """Raise ValueError unless it is a word for `LaneTracker.missed`."""
+    if missed not in MISSED:
+        raise ValueError(f"missed: unknown {missed!r}; one of {', '.join(MISSED)}")
+
+
 @lru_cache(maxsize=256)
 def _runner_of_this(key: _Identity, n_axes: int) -> Runner:
     return _runner_of_equal(key.tracker, n_axes)
@@ -446,7 +470,7 @@ def _runner_of_this(key: _Identity, n_axes: int) -> Runner:
 
 @lru_cache(maxsize=64)
 def _runner_of_equal(tracker: LaneTracker, n_axes: int) -> Runner:
-    return Runner(tracker.program(n_axes))
+    return Runner(tracker.program(n_axes), tracker.missed == "elapsed")
 
 
 def _time_of(state: TrackState | None) -> Array | np.float64 | None:

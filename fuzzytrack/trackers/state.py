@@ -99,18 +99,18 @@ class TrackState:
 
     @property
     def position(self) -> Array:
-        """Position (m), shaped as a plot; NaN before the first plot."""
-        return self._read(self.rows.position, self.rows.n_axes)
+        """Position at `time` (m), shaped as a plot; NaN before the first plot."""
+        return self._read(self.rows.shown("filtered"), self.rows.n_axes)
 
     @property
     def velocity(self) -> Array:
-        """Velocity (m/s); 0 before it is known."""
-        return self._read(self.rows.velocity, self.rows.n_axes)
+        """Velocity at `time` (m/s); 0 before it is known."""
+        return self._read(self.rows.shown("velocity"), self.rows.n_axes)
 
     @property
     def acceleration(self) -> Array:
-        """Acceleration (m/s²); 0 before it is known."""
-        return self._read(self.rows.acceleration, self.rows.n_axes)
+        """Acceleration at `time` (m/s²); 0 before it is known."""
+        return self._read(self.rows.shown("acceleration"), self.rows.n_axes)
 
     @property
     def predicted(self) -> Array:

@@ -16,7 +16,7 @@ from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.start import single_axis_step
 from fuzzytrack.trackers.base import trackers
-from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 
 __all__ = ["WindowSearch"]
 
@@ -38,6 +38,8 @@ class WindowSearch(LaneTracker):
         Position gain until the window is full, 0 < α < 4 - 2√2 = 1.1716.
     grid_step : float
         Distance of the grid's α: grid_step, 2·grid_step, … up to 1; 0 < grid_step <= 1.
+    missed : {"elapsed", "step"}
+        As for `fuzzytrack.AlphaBetaTracker`.
 
     Raises
     ------
@@ -66,8 +68,10 @@ class WindowSearch(LaneTracker):
     window: int = 10
     alpha: float = 0.05
     grid_step: float = 0.05
+    missed: str = "elapsed"
 
     def __post_init__(self) -> None:
+        check_missed(self.missed)
         window = operator.index(self.window)
         if window < 2:
             raise ValueError(f"window must be at least 2 plots, got {window}")

@@ -63,8 +63,9 @@ def test_track_as_json(run, csv):
 
 def test_innovation_rms_by_hand(run, plots):
     found = json.loads(run("track", plots, "--tracker", "fixed:alpha=1:beta=1", "--json").stdout)
-    # (10, 5) a second; (30, 15) is predicted for (31, 15), then (41.., ..) with v = (11, 5)
-    errors = [(1, 0), (39 - 42, 21 - 20)]
+    # (10, 5) a second; (30, 15) is predicted for (31, 15), 2 s after the plot before; then
+    # (41.5, 20) with v = (10.5, 5)
+    errors = [(1, 0), (39 - 41.5, 21 - 20)]
     expected = math.sqrt(np.mean([x * x + y * y for x, y in errors]))
     assert found["total"]["innovation_rms"] == pytest.approx(expected)
     assert found["total"]["alpha"] == 1

@@ -9,7 +9,7 @@ def test_every_row_holds_one_thing(n_axes):
     widths = {
         "position": n_axes, "velocity": n_axes, "acceleration": n_axes, "last_plot": n_axes,
         "gap": 1, "plots": 1, "memory": 4, "predicted": n_axes, "innovation": n_axes, "gains": 3,
-        "plot": n_axes, "sigma": n_axes, "dt": 1,
+        "now": 3 * n_axes, "last_time": 1, "plot": n_axes, "sigma": n_axes, "dt": 1,
     }  # fmt: skip
     taken = [
         getattr(rows, name) + k for name, width in widths.items() for k in range(width)
@@ -18,7 +18,7 @@ def test_every_row_holds_one_thing(n_axes):
     scratch = [rows.scratch_row(name) for name in rows.scratch]
     assert scratch == [rows.given, rows.given + 1]
     assert rows.total == rows.given + 2
-    assert (rows.state, rows.kept) == (rows.predicted, rows.plot)
+    assert (rows.state, rows.results, rows.kept) == (rows.predicted, rows.now, rows.plot)
 
 
 def test_outputs_have_rows_of_their_own():
@@ -26,7 +26,18 @@ def test_outputs_have_rows_of_their_own():
     firsts = [rows.output(name) for name in OUTPUTS]
     assert len(set(firsts)) == len(OUTPUTS)
     assert rows.output("gamma") == rows.gains + 2
-    assert max(firsts) < rows.kept
+    assert max(firsts) < rows.results
+
+
+def test_what_is_shown_is_no_part_of_the_state():
+    rows = Rows(2, 3)
+    firsts = {name: rows.shown(name) for name in OUTPUTS}
+    assert len(set(firsts.values())) == len(OUTPUTS)
+    assert all(rows.state <= first < rows.last_time for first in firsts.values())
+    moving = ("filtered", "velocity", "acceleration")
+    assert [firsts[name] for name in moving] == [rows.now, rows.now + 2, rows.now + 4]
+    for name in set(OUTPUTS) - set(moving):
+        assert firsts[name] == rows.output(name)
 
 
 def test_a_row_that_was_not_named_is_refused():

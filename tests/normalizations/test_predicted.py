@@ -147,10 +147,11 @@ def test_at_constant_gains_it_settles_at_the_closed_form(gains):
 
 @dataclass(frozen=True)
 class Playback(GainScheduler):
-    """Gains from a list, one entry a step from the first plot on."""
+    """Gains from a list, one entry a row from the first plot on."""
 
     gains: tuple[tuple[float, ...], ...]
-    sees_every_step = True
+    sees_starts = True
+    sees_misses = True
 
     def initial_memory(self, n_axes):
         return (0.0,)
@@ -163,7 +164,18 @@ class Playback(GainScheduler):
         return playback
 
 
-def test_on_a_straight_run_the_signal_has_unit_variance():
+def told(missed, values, times, sigmas):
+    """Of each list in `values`, and of dt and sigma, what the normalization is told.
+
+    That is every row, or if time counts from the last plot the rows with one.
+    """
+    rows = np.isfinite(sigmas) | (missed == "step")
+    steps = np.diff(times[rows], prepend=times[0] - 1.0)
+    return rows, [np.asarray(value)[rows] for value in values], steps, sigmas[rows]
+
+
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
+def test_on_a_straight_run_the_signal_has_unit_variance(missed):
     n, tracks = 24, 4000
     gains, dts, sigmas = record(n, seed=5)
     times = np.cumsum(dts)
@@ -172,28 +184,34 @@ def test_on_a_straight_run_the_signal_has_unit_variance():
         7.0 * times[:, None] + random.normal(size=(n, tracks)) * np.minimum(sigmas, 1e9)[:, None]
     )
     plots[np.isinf(sigmas)] = np.nan
-    tracker = AlphaBetaTracker(Playback(tuple(map(tuple, gains.tolist()))))
+    tracker = AlphaBetaTracker(Playback(tuple(map(tuple, gains.tolist()))), missed=missed)
     innovations = tracker.run(times, plots[:, :, None]).innovation[:, :, 0]
     seen = ~np.isnan(innovations[:, 0])
     # The signal is the innovation times a factor that the noise has no part in.
-    factor = predicted(seen.astype(float), gains, np.diff(times, prepend=0.0), sigmas)[:, 0]
+    rows, values, *given = told(missed, (seen.astype(float), gains), times, sigmas)
+    factor = np.zeros(n)
+    factor[rows] = predicted(*values, *given)[:, 0]
     variance = np.mean((factor[:, None] * np.nan_to_num(innovations)) ** 2, axis=1)[seen]
     assert seen.sum() == n - 8
     # Four standard errors of a variance
     assert variance == pytest.approx(1.0, abs=4 * math.sqrt(2 / tracks))
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("opening", ["", ", opening: growing-memory"])
-def test_the_gains_that_were_chosen_come_back_to_the_normalization(opening):
+def test_the_gains_that_were_chosen_come_back_to_the_normalization(opening, missed):
     rules = loads_rulebase(RULES.replace("NAME", "predicted" + opening))
     _, dts, sigmas = record()
     plots = 5.0 * np.cumsum(dts) ** 1.3 + np.random.default_rng(4).normal(0, 9, 60)
     plots[np.isinf(sigmas)] = np.nan
     times = np.cumsum(dts)
-    result = AlphaBetaTracker(FuzzyScheduler(rules)).run(times, plots, np.minimum(sigmas, 1e9))
+    tracker = AlphaBetaTracker(FuzzyScheduler(rules), missed=missed)
+    result = tracker.run(times, plots, np.minimum(sigmas, 1e9))
     used = np.nan_to_num(np.stack([result.gains.alpha, result.gains.beta, 0 * plots], axis=1))
-    steps = np.diff(times, prepend=times[0] - 1.0)
-    error = predicted(np.nan_to_num(result.innovation), used, steps, sigmas)[:, 0]
+    values = (np.nan_to_num(result.innovation), used)
+    rows, values, *given = told(missed, values, times, sigmas)
+    error = np.zeros(60)
+    error[rows] = predicted(*values, *given)[:, 0]
     expected = FuzzySystem(rules)(lag=error)["alpha"]
     seen = ~np.isnan(result.gains.alpha)
     opens = np.zeros(60, dtype=bool)
@@ -217,11 +235,13 @@ def test_predicted_gains_less_after_missed_plots():
 
 def test_only_a_normalization_with_feedback_has_one():
     assert Scale().feedback(1) is None
-    assert not Scale().sees_every_step
+    assert not Scale().sees_starts
     on_scale = FuzzyScheduler(loads_rulebase(RULES.replace("NAME", "scale")))
-    assert not on_scale.sees_every_step
+    assert not on_scale.sees_starts
     opened = replace(
         on_scale.rules, scheduler=(*on_scale.rules.scheduler, ("opening", "growing-memory"))
     )
-    assert FuzzyScheduler(opened).sees_every_step
-    assert FuzzyScheduler(loads_rulebase(RULES.replace("NAME", "predicted"))).sees_every_step
+    on_predicted = FuzzyScheduler(loads_rulebase(RULES.replace("NAME", "predicted")))
+    assert FuzzyScheduler(opened).sees_starts
+    assert on_predicted.sees_starts
+    assert not any(s.sees_misses for s in (on_scale, FuzzyScheduler(opened), on_predicted))

@@ -12,7 +12,9 @@ from fuzzytrack.simulation.starting import prepare_start
 from fuzzytrack.trackers.catalog import make_tracker
 
 RUNS = 300
-TRACKERS = {"T1": "fixed:alpha=0.5377:beta=0.2018", "T4": "stiffness-damping-cog"}
+TRACKERS = {
+    "T1": "fixed:alpha=0.5377:beta=0.2018:missed=step", "T4": "stiffness-damping-cog:missed=step"
+}  # fmt: skip
 # Mean distance of prediction and truth (m), scans 3 to 20, coasted ones too.
 FIELD = {"T1": (141.8, 200.7, 250.8, 442.5), "T4": (143.7, 203.8, 254.3, 438.3)}
 # The same with noise of 115 m on each axis, nothing missed.

@@ -53,22 +53,25 @@ CASES = [
 ]
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("scheduler", CASES)
-def test_it_is_the_recursion_of_the_paper(scheduler):
+def test_it_is_the_recursion_of_the_paper(scheduler, missed):
     random = np.random.default_rng(8)
     times = np.cumsum(random.uniform(0.5, 2.0, 80))
     sigma = random.uniform(5.0, 20.0, 80)
     plots = np.where(times > 60, (times - 60) ** 2, 0.0) + sigma * random.normal(size=80)
     plots[[10, 11, 30]] = np.nan
-    result = AlphaBetaTracker(scheduler).run(times, plots, sigma)
+    result = AlphaBetaTracker(scheduler, missed=missed).run(times, plots, sigma)
     asked, seen = ~np.isnan(result.innovation), ~np.isnan(plots)
     # Since the last plot, not since the last time at which there could have been one.
     spans = np.diff(times[seen])[1:]
     expected = by_the_paper(result.innovation[asked], spans, sigma[asked], scheduler)
     np.testing.assert_allclose(result.gains.alpha[asked], expected, rtol=1e-8)
     beta = 2 * (1 - np.sqrt(1 - expected)) ** 2
-    steps = np.diff(times, prepend=0.0)[asked]
-    assert (steps < spans).sum() == 2
+    steps = spans
+    if missed == "step":
+        steps = np.diff(times, prepend=0.0)[asked]
+        assert (steps < spans).sum() == 2
     np.testing.assert_allclose(result.gains.beta[asked] / steps, beta / spans, rtol=1e-7)
 
 

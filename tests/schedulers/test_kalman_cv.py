@@ -12,22 +12,31 @@ def matrices(order, dt):
     return move, push
 
 
-def numpy_filter(times, plots, sigma, sigma_v, start):
-    """Textbook filter with full matrices: predictions, states and covariances after each plot."""
+def numpy_filter(times, plots, sigma, sigma_v, start, missed):
+    """Textbook filter with full matrices: predictions, states, covariances that are remembered.
+
+    If time counts from the last plot, noise comes once from plot to plot, and a missed one leaves
+    no trace.
+    """
     order = len(start) + 1
     h = np.eye(order)[:1]
     x = np.zeros((order, 1))
     x[0] = plots[0]
     p = np.diag([sigma[0] ** 2, *(s**2 for s in start)])
-    states, predictions, covariances = [x], [np.nan], [p]
+    states, predictions, covariances, last = [x], [np.nan], [p], 0
     for k in range(1, len(times)):
-        move, push = matrices(order, times[k] - times[k - 1])
+        before = x, p
+        move, push = matrices(order, times[k] - times[last])
         x, p = move @ x, move @ p @ move.T + push @ push.T * sigma_v**2
         predictions.append(x[0, 0])
         if not np.isnan(plots[k]):
             gain = p @ h.T / (h @ p @ h.T + sigma[k] ** 2)
             x, p = x + gain * (plots[k] - x[0]), (np.eye(order) - gain @ h) @ p
         states.append(x)
+        if np.isnan(plots[k]) and missed == "elapsed":
+            x, p = before
+        else:
+            last = k
         covariances.append(p)
     return np.array(predictions), np.array(states)[:, :, 0], np.array(covariances)
 
@@ -47,12 +56,16 @@ def make(order, sigma_v=0.7, velocity_sigma=9.0, **others):
     return KalmanCA(sigma_v, 0.4, velocity_sigma=velocity_sigma, **others)
 
 
+@pytest.mark.parametrize("last_plot", [np.nan, 900.0])
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("order", [2, 3])
-def test_it_is_the_kalman_filter_at_any_times_noise_and_gaps(order):
+def test_it_is_the_kalman_filter_at_any_times_noise_and_gaps(order, missed, last_plot):
     times, plots, sigma = record()
-    result = AlphaBetaTracker(make(order), start="one-point").run(times, plots, sigma)
+    plots[-1] = last_plot
+    tracker = AlphaBetaTracker(make(order), start="one-point", missed=missed)
+    result = tracker.run(times, plots, sigma)
     start = (9.0, 0.4)[: order - 1]
-    predictions, states, covariances = numpy_filter(times, plots, sigma, 0.7, start)
+    predictions, states, covariances = numpy_filter(times, plots, sigma, 0.7, start, missed)
     assert result.predicted[1:] == pytest.approx(predictions[1:], rel=1e-11)
     assert result.filtered == pytest.approx(states[:, 0], rel=1e-11)
     assert result.velocity == pytest.approx(states[:, 1], rel=1e-9)

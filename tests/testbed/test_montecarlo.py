@@ -109,16 +109,19 @@ def test_nis_and_nees_of_a_kalman_filter_from_its_own_covariance():
             tracker, at = TRACKERS["kalman"], scenario.time[k]
             state = tracker.step(state, z, at, sigma) if state else tracker.start(z, at, sigma)
             phase, p11, p12, p22, _ = state.lanes[state.rows.memory : state.rows.state]
-            if before is not None and not np.isnan(state.innovation).all():
-                q, (b11, b12, b22) = 0.25, before
-                s = b11 + 2 * b12 + b22 + q / 4 + sigma**2
-                np.testing.assert_allclose(
-                    found.nis[0, run, k], np.nansum(state.innovation**2 / s), rtol=1e-9
-                )
-            if (phase == 2).all():
-                off = (state.position - scenario.position[k]) ** 2 / p11
+            if before is not None:
+                q, (b11, b12, b22, since) = 0.25, before
+                dt = at - since
+                predicted = b11 + dt * (2 * b12 + dt * b22) + q * dt**4 / 4
+                if not np.isnan(state.innovation).all():
+                    expected = np.nansum(state.innovation**2 / (predicted + sigma**2))
+                    np.testing.assert_allclose(found.nis[0, run, k], expected, rtol=1e-9)
+            last = state.lanes[state.rows.last_time]
+            if (phase == 2).all() and (before is not None or (last == at).all()):
+                variance = np.where(last == at, p11, predicted if before is not None else np.nan)
+                off = (state.position - scenario.position[k]) ** 2 / variance
                 np.testing.assert_allclose(found.nees[0, run, k], off.sum(), rtol=1e-9)
-            before = (p11, p12, p22) if (phase == 2).all() else None
+            before = (p11, p12, p22, last) if (phase == 2).all() else None
     assert np.isfinite(found.nis).sum() > 9
 
 

@@ -1,5 +1,6 @@
 """The checks of schedulers fail what breaks the contract."""
 
+import math
 from dataclasses import dataclass
 
 import pytest
@@ -53,8 +54,8 @@ def test_a_scheduler_is_a_value(scheduler, promise):
     [
         (forgets_one, (0.0,), "must return a memory of length 1 as it gets, got length 0"),
         (bare_memory, (0.0,), "must return its memory as a tuple, got 1.0"),
-        (four_answers, (), r"must return \(alpha, beta, gamma, phi, memory\), got \(0.5, 0.2, 0.0"),
-        (no_answer, (), r"must return \(alpha, beta, gamma, phi, memory\), got None"),
+        (four_answers, (), r"must return \(alpha, .*, retention, memory\), got \(0.5, 0.2, 0.0"),
+        (no_answer, (), r"must return \(alpha, beta, gamma, retention, memory\), got None"),
         (lambda *words: [0.5, 0.2, 0.0, 1.0, ()], (), r"must return \(alpha, .*\), got \[0.5, 0"),
         (lambda *words: (0.5, 0.2, 0.0, 1.0, []), (), r"its memory as a tuple, got \[\]"),
         (grows_to_infinity, (), "gains and memory must be finite floats"),
@@ -73,13 +74,29 @@ def test_gamma_needs_a_declaration():
         run_check("kernel-answers-in-form", made)
 
 
-def gains(alpha, beta, gamma=0.0, phi=1.0, memory=()):
-    return scheduler_of(lambda e, d, dt, s, m: (alpha, beta, gamma, phi, m), memory)
+def gains(alpha, beta, gamma=0.0, retention=None, memory=()):
+    said, uses = (1.0, False) if retention is None else (retention, True)
+    return scheduler_of(
+        lambda e, d, dt, s, m: (alpha, beta, gamma, said, m), memory, uses_retention=uses
+    )
+
+
+@pytest.mark.parametrize("retention", [0.0, -1.0, math.nan, 2])
+def test_a_retention_is_a_time(retention):
+    with pytest.raises(AssertionError, match=r"^kernel-answers-in-form: .* retention must be"):
+        run_check("kernel-answers-in-form", gains(0.5, 0.2, 0.01, retention))
+
+
+@pytest.mark.parametrize("retention", [1e-3, 7.0, math.inf])
+def test_a_retention_may_be_for_ever(retention):
+    run_check("kernel-answers-in-form", gains(0.5, 0.2, 0.01, retention))
 
 
 @pytest.mark.parametrize(
-    "values", [(1.9, 3.0), (0.5, -0.1), (2.1, 0.1), (-0.1, 0.2), (0.5, 0.2, 0.3), (0.5, 0.2, -0.1)]
-)
+    "values",
+    [(1.9, 3.0), (0.5, -0.1), (2.1, 0.1), (-0.1, 0.2), (0.5, 0.2, 0.3), (0.5, 0.2, -0.1),
+     (0.5, 0.2, 0.3, math.inf)],
+)  # fmt: skip
 def test_gains_outside_of_the_stability_region(values):
     with pytest.raises(
         AssertionError, match=r"^gains-are-stable: kernel at .*2 alpha \+ beta <= 4"
@@ -91,10 +108,11 @@ def test_gains_outside_of_the_stability_region(values):
 
 
 @pytest.mark.parametrize(
-    # Deadbeat gains, a plot that is left out, the corners and edges, and acceleration that fades.
+    # Deadbeat gains, a plot that is left out, the corners and edges, and acceleration that fades:
+    # of a retention time of 0.25 s, φ = 0.2 is left after half a second.
     "values",
     [(1.0, 1.0), (1.0, 1.5, 1.0), (0.0, 0.0), (0.0, 4.0), (2.0, 0.0), (1.0, 2.0),
-     (0.5, 0.2, 0.5, 0.2)],
+     (0.5, 0.2, 0.5, 0.25)],
 )  # fmt: skip
 def test_the_edge_of_the_region_is_inside(values):
     run_check("gains-are-stable", gains(*values))
@@ -121,6 +139,6 @@ def test_steps_of_a_start_need_no_gains():
     def counts(innovation, change, dt, sigma, memory):
         return (0.5 if memory[0] > 1.0 else 9.0), 0.2, 0.0, 1.0, (memory[0] + 1.0,)
 
-    run_check("gains-are-stable", scheduler_of(counts, (0.0,), sees_every_step=True))
+    run_check("gains-are-stable", scheduler_of(counts, (0.0,), sees_starts=True))
     with pytest.raises(AssertionError, match="alpha = 9"):
         run_check("gains-are-stable", scheduler_of(counts, (0.0,)))

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from subjects import Faulty
+from subjects import Faulty, run_check
 
 import fuzzytrack as ft
 from fuzzytrack.errors import PluginError
@@ -170,3 +170,49 @@ def test_a_tracker_has_four_verbs():
         check_tracker(ft.FixedGains(0.5, 0.2))
     with pytest.raises(AssertionError, match="got the class Faulty; give an object"):
         list(checks_for(Faulty))
+
+
+@dataclass(frozen=True)
+class Counting(LaneTracker):
+    """Fixed gains that fall with every row without a plot, or with none."""
+
+    counts: bool = False
+    keeps: bool = True
+    sees_misses: bool = False
+    missed: str = "elapsed"
+
+    def program(self, n_axes):
+        rows = Rows(n_axes, 1)
+        row, counts = rows.memory, self.counts
+
+        def make(stride):
+            def correct(b, lane, z, prediction, velocity, dt, gap, sigma, update, starts):
+                b[row * stride + lane] += 1.0 if counts & (z != z) else 0.0
+                alpha = 0.5 / (1.0 + b[row * stride + lane])
+                e = z - prediction if update else 0.0
+                return prediction, prediction + alpha * e, velocity + 0.1 / dt * e, alpha, 0.1
+
+            return single_axis_step(rows, stride, correct)
+
+        return LaneProgram(rows, (0.0,), make, keeps_state=self.keeps)
+
+
+@pytest.mark.parametrize(
+    "tracker",
+    [
+        Counting(counts=True, keeps=False),
+        Counting(counts=True, sees_misses=True),
+        Counting(counts=True, missed="step"),
+    ],
+    ids=["restored", "declared", "by steps"],
+)
+def test_rows_left_out_may_count_where_that_is_told(tracker):
+    run_check("rows-left-out", tracker)
+
+
+def test_rows_left_out_must_not_count():
+    with pytest.raises(AssertionError, match=r"^rows-left-out: rows without a plot must"):
+        run_check("rows-left-out", Counting(counts=True))
+    # Also without a count, this step writes what a track that coasts has.
+    with pytest.raises(AssertionError, match=r"^rows-left-out: rows without a plot must"):
+        run_check("rows-left-out", Counting())

@@ -76,9 +76,14 @@ def outputs_of(run):
     return found
 
 
+def lanes_of(state):
+    """What a step writes of a state."""
+    return state.lanes[: state.rows.results]
+
+
 def whole(result):
     """All that is recorded of a result."""
-    return {**outputs_of(result), LANES: result.state.lanes}
+    return {**outputs_of(result), LANES: lanes_of(result.state)}
 
 
 def counted(function):
@@ -133,7 +138,7 @@ def replays(case, options=""):
                 yield _stream(case, tracker, name, many, "long stream, compiled", 500)
 
 
-def _run(case, tracker, given, dtype, **settings):
+def track(case, tracker, given, dtype, **settings):
     sigma = given.sigma if case.noise else None
     return tracker.run(given.times, given.plots, sigma, dtype=dtype, **settings)
 
@@ -141,7 +146,7 @@ def _run(case, tracker, given, dtype, **settings):
 def _runs(case, tracker, name, given, dtype, way):
     """Tracks at once, in parts, with less kept, and one of them alone."""
     steps, tracks = given.plots.shape[:2]
-    result, calls = counted(lambda: _run(case, tracker, given, dtype))
+    result, calls = counted(lambda: track(case, tracker, given, dtype))
     evidence = (calls, steps * tracks) if way == "plain" else (None, 0)
     yield Replay(name, dtype, way, whole(result), (), 1, *evidence)
 
@@ -152,17 +157,17 @@ def _runs(case, tracker, name, given, dtype, way):
 
     state, parts = None, []
     for ends in ((0, 1), (1, 5), (5, steps)):
-        part = _run(case, tracker, given.part(slice(*ends)), dtype, state=state)
+        part = track(case, tracker, given.part(slice(*ends)), dtype, state=state)
         state, parts = part.state, [*parts, outputs_of(part)]
     joined = {key: np.concatenate([part[key] for part in parts]) for key in OUTPUTS}
-    yield Replay(name, dtype, f"{way}, in parts", {**joined, LANES: state.lanes})
+    yield Replay(name, dtype, f"{way}, in parts", {**joined, LANES: lanes_of(state)})
 
     # Compiled, a run without innovation and gains has code of its own; once a case is enough.
     for keep in KEEP if case.compiled or dtype == "float64" else KEEP[1:3]:
-        kept = _run(case, tracker, given, dtype, keep=keep)
+        kept = track(case, tracker, given, dtype, keep=keep)
         assert kept.kept == keep
         yield Replay(
-            name, dtype, f"{way}, keep={keep}", {**outputs_of(kept), LANES: kept.state.lanes}
+            name, dtype, f"{way}, keep={keep}", {**outputs_of(kept), LANES: lanes_of(kept.state)}
         )
 
     places = [(0,), (1,)]
@@ -170,7 +175,7 @@ def _runs(case, tracker, name, given, dtype, way):
         # Axes do not know of one another.
         places.append((2, 1))
     for place in places:
-        alone = _run(case, tracker, given.track(*place), dtype)
+        alone = track(case, tracker, given.track(*place), dtype)
         called = f"{way}, track {place[0]}{', axis 1' if len(place) > 1 else ''} alone"
         yield Replay(name, dtype, called, outputs_of(alone), (slice(None), *place))
 
@@ -180,9 +185,9 @@ def _large(case, tracker, name, given, dtype, coordinates):
     steps, tracks = given.plots.shape[:2]
     repeats = -(-coordinates // given.plots.size)
     many = given.repeated(repeats)
-    shared = _run(case, tracker, many, dtype, threads=2)
+    shared = track(case, tracker, many, dtype, threads=2)
     yield Replay(name, dtype, "large job, two threads", whole(shared), (), repeats)
-    result, calls = counted(lambda: _run(case, tracker, many, dtype, threads=1))
+    result, calls = counted(lambda: track(case, tracker, many, dtype, threads=1))
     evidence = (calls, steps * tracks * repeats, True)
     yield Replay(name, dtype, "large job", whole(result), (), repeats, *evidence)
 
@@ -193,16 +198,16 @@ def _stream(case, tracker, name, given, way, repeats=1):
             return None
         return given.sigma if np.ndim(given.sigma) == 0 else given.sigma[k]
 
-    def track():
+    def follow():
         states = [tracker.start(given.plots[0], given.times[0], sigma_at(0))]
         for k in range(1, len(given.plots)):
             states.append(tracker.step(states[-1], given.plots[k], given.times[k], sigma_at(k)))
         return states
 
-    states, calls = counted(track)
+    states, calls = counted(follow)
     steps = [outputs_of(state) for state in states]
     outputs = {key: np.stack([step[key] for step in steps]) for key in OUTPUTS}
-    outputs[LANES] = states[-1].lanes
+    outputs[LANES] = lanes_of(states[-1])
     lane_steps = given.plots.shape[0] * given.plots.shape[1]
     compiled = "compiled" in way
     evidence = (None, 0) if compiled and repeats == 1 else (calls, lane_steps)
@@ -213,7 +218,7 @@ def recorded(case, options=""):
     """What goes into the file of a case: by inputs and precision, the arrays by name."""
     tracker = tracker_of(case, options)
     return {
-        (name, dtype): whole(_run(case, tracker, given, dtype))
+        (name, dtype): whole(track(case, tracker, given, dtype))
         for name, given in INPUTS.items()
         for dtype in (("float64", "float32") if case.single else ("float64",))
     }

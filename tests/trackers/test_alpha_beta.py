@@ -109,13 +109,14 @@ def test_one_point_start_with_unit_gains_is_the_two_point_start():
     assert np.isnan(one.predicted[0])
 
 
-def test_missed_plots_are_coasted_and_beta_keeps_its_own_time_step():
+@pytest.mark.parametrize(("missed", "dt"), [("elapsed", 3), ("step", 1)])
+def test_missed_plots_are_coasted_and_beta_is_over_its_time_step(missed, dt):
     plots = np.array([0.0, 10.0, 20.0, np.nan, np.nan, 56.0, 60.0])
-    result = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)).run(np.arange(7), plots)
+    result = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2), missed=missed).run(np.arange(7), plots)
     np.testing.assert_allclose(result.predicted[2:6], [20, 30, 40, 50])
     np.testing.assert_array_equal(result.coasted, [0, 0, 0, 1, 1, 0, 0])
     np.testing.assert_allclose(result.filtered[3:6], [30, 40, 53])
-    assert result.velocity[5] == pytest.approx(10 + 0.2 * 6)
+    assert result.velocity[5] == pytest.approx(10 + 0.2 * 6 / dt)
     assert np.isnan(result.gains.alpha[3])
     assert np.isnan(result.innovation[3])
 
@@ -130,14 +131,17 @@ def test_missed_plots_are_coasted_and_beta_keeps_its_own_time_step():
     ],
 )
 def test_how_long_gaps_may_be(gains, gap, stable):
-    """One plot is seen in every g steps: stable while 2α + gβ < 4."""
+    """One plot is seen in every g steps: with β over one step stable while 2α + gβ < 4."""
     alpha, beta = gains
     assert (2 * alpha + gap * beta < 4) == stable
     plots = np.full(300 * gap, np.nan)
     plots[::gap] = np.random.default_rng(1).normal(size=300)
     plots[1] = 0.0
-    found = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta)).run(np.arange(float(len(plots))), plots)
-    assert (np.abs(found.filtered[-gap:]).max() < 1e3) == stable
+    times = np.arange(float(len(plots)))
+    by_step = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta), missed="step").run(times, plots)
+    assert (np.abs(by_step.filtered[-gap:]).max() < 1e3) == stable
+    elapsed = ft.AlphaBetaTracker(ft.FixedGains(alpha, beta)).run(times, plots)
+    assert np.abs(elapsed.filtered[-gap:]).max() < 1e3
 
 
 @pytest.mark.parametrize(
@@ -165,7 +169,8 @@ def test_the_start_waits_for_plots():
     assert result.predicted[5] == pytest.approx(11.5)
 
 
-def test_the_change_of_observation_spans_the_gap():
+@pytest.mark.parametrize(("missed", "dt"), [("elapsed", 3.0), ("step", 1.0)])
+def test_the_change_of_observation_spans_the_gap(missed, dt):
     @dataclass(frozen=True)
     class Spy(GainScheduler):
         seen: list = field(default_factory=list, compare=False)
@@ -180,33 +185,82 @@ def test_the_change_of_observation_spans_the_gap():
             return spy
 
     spy = Spy()
-    ft.AlphaBetaTracker(spy).run([0, 1, 3, 4], [0.0, 1.0, np.nan, 6.0], [1, 2, 3, 4])
-    assert spy.seen[-1] == (2.0, 5.0, 1.0, 4.0)
+    ft.AlphaBetaTracker(spy, missed=missed).run([0, 1, 3, 4], [0.0, 1.0, np.nan, 6.0], [1, 2, 3, 4])
+    assert spy.seen[-1] == (2.0, 5.0, dt, 4.0)
     # Missed plots and the start are asked with harmless numbers, never with NaN.
     assert spy.seen[:3] == [(0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 2.0, 1.0)]
 
 
-def test_retention_scales_the_acceleration():
-    @dataclass(frozen=True)
-    class Leaky(GainScheduler):
-        phi: float
+@dataclass(frozen=True)
+class Leaky(GainScheduler):
+    """Retention times in turn, each for the acceleration after one plot."""
 
-        def kernel(self, n_axes):
-            phi = self.phi
+    times: tuple
+    uses_retention: bool = True
+    sees_starts: bool = True
 
-            def leaky(innovation, change, dt, sigma, memory):
-                return 0.5, 0.4, 0.2, phi, memory
+    def initial_memory(self, n_axes):
+        return (0.0,)
 
-            return leaky
+    def kernel(self, n_axes):
+        times, count = self.times, float(len(self.times))
 
-    plots = [0.0, 1.0, 4.0, 9.0]
-    full = ft.AlphaBetaTracker(Leaky(1.0)).run(range(4), plots)
-    half = ft.AlphaBetaTracker(Leaky(0.5)).run(range(4), plots)
-    assert full.acceleration[2] == pytest.approx(0.1 * full.innovation[2])
-    assert half.acceleration[2] == pytest.approx(0.5 * full.acceleration[2])
-    assert half.acceleration[3] == pytest.approx(
-        0.5 * (half.acceleration[2] + 0.1 * half.innovation[3])
+        def leaky(innovation, change, dt, sigma, memory):
+            turn, following = memory[0], memory[0] + 1.0
+            retention = times[0]
+            for k, time in enumerate(times):
+                retention = time if turn == k else retention
+            return 0.5, 0.4, 0.2, retention, (following if following < count else 0.0,)
+
+        return leaky
+
+
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
+def test_the_acceleration_decays_until_the_next_prediction(missed):
+    retention = (2.0, np.inf, 0.5)
+    times = np.array([0.0, 1.0, 1.5, 4.0, 4.5, 6.0, 9.0])
+    plots = np.array([0.0, 1.0, 4.0, np.nan, 20.0, 31.0, 70.0])
+    tracker = ft.AlphaBetaTracker(Leaky(retention), missed=missed)
+    result = tracker.run(times, plots)
+
+    def faded(x):
+        return 1 / (1 + x + x**2 / 2)
+
+    # At the second plot velocity is 1 m/s; both plots of the start have been counted.
+    x, v, a, last, turn, tau = 1.0, 1.0, 0.0, times[1], 2, retention[1]
+    for k in range(2, len(times)):
+        dt = times[k] - last
+        decayed = a * faded(dt / tau)
+        predicted, moving = x + v * dt + decayed * dt * dt / 2, v + decayed * dt
+        assert result.predicted[k] == pytest.approx(predicted, rel=1e-12)
+        seen = not np.isnan(plots[k])
+        e = plots[k] - predicted if seen else 0.0
+        now = (
+            predicted + 0.5 * e,
+            moving + 0.4 / dt * e,
+            decayed + 0.2 / (2 * dt * dt) * e,
+        )
+        shown = result.filtered[k], result.velocity[k], result.acceleration[k]
+        assert shown == pytest.approx(now, rel=1e-12)
+        if seen or missed == "step":
+            (x, v, a), last = now, times[k]
+            tau, turn = retention[turn % 3], turn + 1
+
+    state = tracker.start(plots[0], times[0])
+    for z, t in zip(plots[1:], times[1:], strict=True):
+        state = tracker.step(state, z, t)
+    np.testing.assert_array_equal(state.lanes, result.state.lanes)
+    batch = np.repeat(plots[:, None, None], 40_000, axis=1)
+    np.testing.assert_array_equal(tracker.run(times, batch).predicted[:, 7, 0], result.predicted)
+
+
+def test_without_retention_the_fourth_number_is_not_used():
+    given = Leaky((2.0, np.inf, 0.5), uses_retention=False)
+    result = ft.AlphaBetaTracker(given).run(range(5), [0.0, 1.0, 4.0, 9.0, 20.0])
+    kept = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.4, 0.2)).run(
+        range(5), [0.0, 1.0, 4.0, 9.0, 20.0]
     )
+    np.testing.assert_array_equal(result.predicted, kept.predicted)
 
 
 def test_a_coupled_scheduler_misses_a_plot_with_a_coordinate_missing():

@@ -28,10 +28,11 @@ class Member:
         self.alpha, self.beta = alpha, alpha**2 / (2 - alpha)
         self.score = 0.0
 
-    def predict(self, dt):
-        self.x = self.x + self.v * dt
+    def predicted(self, dt):
+        return self.x + self.v * dt
 
     def correct(self, z, dt):
+        self.x = self.predicted(dt)
         e = z - self.x
         self.x, self.v = self.x + self.alpha * e, self.v + self.beta / dt * e
         return e
@@ -43,19 +44,25 @@ def literal_weights(members, selection):
     return np.eye(len(members))[np.argmin([member.score for member in members])]
 
 
-def literal_bank(times, plots, sigma, alphas, selection, forget):
-    """Rows of (predicted, filtered, velocity, alpha, beta), one axis, from the second plot on."""
+def literal_bank(times, plots, sigma, alphas, selection, forget, missed):
+    """Rows of (predicted, filtered, velocity, alpha, beta), one axis, from the second plot on.
+
+    Without a plot, filtered is the prediction. Time counts from the last plot, or the last row.
+    """
     members = [Member(alpha) for alpha in alphas]
-    seen, history, weights = [], [], None
+    seen, history, weights, now = [], [], None, None
     for k, z in enumerate(plots):
         row = [np.nan] * 5
         if len(seen) >= 2:
-            dt = times[k] - times[k - 1]
-            for member in members:
-                member.predict(dt)
-            before = [member.x for member in members]
+            dt = times[k] - (seen[-1][0] if missed == "elapsed" else times[k - 1])
+            before = [member.predicted(dt) for member in members]
             row[0] = weights @ before
-            if not np.isnan(z):
+            if np.isnan(z):
+                now = before
+                if missed == "step":
+                    for member, x in zip(members, before, strict=True):
+                        member.x = x
+            else:
                 for member in members:
                     e = member.correct(z, dt)
                     if selection == "soft":
@@ -77,7 +84,7 @@ def literal_bank(times, plots, sigma, alphas, selection, forget):
                     member.x, member.v = z1, (z1 - z0) / (t1 - t0)
                 weights = literal_weights(members, selection)
         if len(seen) >= 2:
-            row[1] = weights @ [member.x for member in members]
+            row[1] = weights @ (now if np.isnan(z) else [member.x for member in members])
             row[2] = weights @ [member.v for member in members]
         history.append(row)
     return np.array(history).T
@@ -89,17 +96,18 @@ def literal_bank(times, plots, sigma, alphas, selection, forget):
     selection=st.sampled_from(SELECTIONS),
     forget=st.sampled_from([0.0, 0.5, 0.9, 1.0]),
     members=st.integers(1, 18),
+    missed=st.sampled_from(["elapsed", "step"]),
 )
-def test_equals_the_literal_bank(seed, selection, forget, members):
+def test_equals_the_literal_bank(seed, selection, forget, members, missed):
     random = np.random.default_rng(seed)
     times = np.cumsum(random.uniform(0.5, 2.0, 30))
     plots = np.cumsum(random.normal(0, 30, 30)) + 5 * times
     plots[random.random(30) < 0.2] = np.nan
     sigma = random.uniform(5, 20, 30)
-    bank = ParallelBank(0.2, 0.9, members, selection, forget)
+    bank = ParallelBank(0.2, 0.9, members, selection, forget, missed)
     result = bank.run(times, plots, sigma)
     expected = literal_bank(
-        times, plots, sigma, np.linspace(0.2, 0.9, members), selection, forget
+        times, plots, sigma, np.linspace(0.2, 0.9, members), selection, forget, missed
     )  # fmt: skip
     known = ~np.isnan(expected[1])
     gains = result.gains
@@ -161,9 +169,10 @@ def test_hindsight_compiled_is_the_same():
     z = WHITE_NOISE.measure(truth, streams(1, 3)).z
     z[20:23] = np.nan
     core = runner(ParallelBank(selection="hindsight"), 1)
-    lanes, dts = z.reshape(100, 6, 1), np.diff(times, prepend=0.0)[:, None]
-    sigma = np.full((1, 1, 1), np.nan)
-    plain, native = (core(core.fresh(6), lanes, dts, sigma, native=way)[1] for way in (False, True))
+    lanes, sigma = z.reshape(100, 6, 1), np.full((1, 1, 1), np.nan)
+    plain, native = (
+        core(None, lanes, times[:, None], sigma, native=way)[1] for way in (False, True)
+    )
     for name, values in plain.items():
         np.testing.assert_array_equal(values, native[name], err_msg=name)
 
@@ -230,6 +239,7 @@ def test_from_a_word():
         ({"members": 0}, "members must be at least 1, got 0"),
         ({"selection": "worst"}, "selection: unknown 'worst'; one of soft, best, last, hindsight"),
         ({"forget": 1.1}, "forget must be from 0 to 1, got 1.1"),
+        ({"missed": "late"}, "missed: unknown 'late'; one of elapsed, step"),
     ],
 )
 def test_bad_parameters(parameters, message):
@@ -268,10 +278,7 @@ def errors_in_s3(bank, noise, native):
     shape = (len(truth), -1, 1)
     lanes = plots.z.reshape(shape)
     core = runner(bank, 1)
-    outputs = core(
-        core.fresh(lanes.shape[1]), lanes, np.diff(times, prepend=0.0)[:, None],
-        plots.sigma.reshape(shape), native=native,
-    )[1]  # fmt: skip
+    outputs = core(None, lanes, times[:, None], plots.sigma.reshape(shape), native=native)[1]
     return published_rmse(outputs["predicted"].reshape(plots.z.shape), truth[:, None])
 
 

@@ -48,6 +48,7 @@ def test_rule_bases_by_name_and_file(tmp_path):
         assert make_tracker(str(tmp_path / name)).scheduler.rules == rules
     one = make_tracker(f" {tmp_path / 'mine.yaml'}:method=relation:start=one-point ")
     assert (one.scheduler.method, one.start_mode) == ("relation", "one-point")
+    assert make_tracker(f"{tmp_path / 'mine.yaml'}:missed=step").missed == "step"
 
 
 def test_upper_case_suffix_is_a_file(tmp_path, monkeypatch):
@@ -82,16 +83,20 @@ def test_values_follow_the_annotations():
         ("stifness-damping", "no such tracker; did you mean 'stiffness-damping'.*fixed.*yaml"),
         (
             "fixed:alpha=.5",
-            "needs beta; write it as :beta=...; parameters: alpha, beta, gamma=0.0, "
-            "period=None, start=two-point$",
+            "needs beta; write it as :beta=...; parameters: alpha, beta, gamma=0.0, period=None, "
+            "start=two-point, missed=elapsed$",
         ),
-        ("fixed:alfa=.5", r"did you mean 'alpha'\? allowed: alpha, beta, gamma, period, start$"),
+        (
+            "fixed:alfa=.5",
+            r"did you mean 'alpha'\? allowed: alpha, beta, gamma, period, start, missed$",
+        ),
         ("fixed:alhpa=.5:beta=.2", "unknown parameter 'alhpa'; did you mean 'alpha'.*allowed"),
         ("fixed:alpha=a:beta=.2", "alpha must be a number, got 'a'"),
         ("fixed:alpha=1:alpha=1", "parameter 'alpha' is given twice"),
         ("fixed:.5:beta=.2", "'.5' is no parameter; write parameters as name=value"),
         ("fixed:alpha=3:beta=1", "tracker 'fixed:alpha=3:beta=1': alpha, beta must keep"),
         ("chan-style:start=q", "start: unknown 'q'"),
+        ("chan-style:missed=q", "missed: unknown 'q'; one of elapsed, step"),
         ("chan-style:method=q", "unknown 'q'"),
         ("chan-style:metod=table", "did you mean 'method'"),
         ("alpha-beta", "needs scheduler"),
@@ -131,7 +136,7 @@ def test_annotations_for_type_checkers_only(monkeypatch):
 def test_everything_listed_has_a_name_parameters_and_package():
     entries = {(e.kind, e.name): e for e in catalog()}
     assert entries["rule base", "stiffness-damping"].parameters == (
-        "method=exact", "period=None", "start=two-point")  # fmt: skip
+        "method=exact", "period=None", "start=two-point", "missed=elapsed")  # fmt: skip
     assert entries["scheduler", "fixed"].parameters[:3] == ("alpha", "beta", "gamma=0.0")
     assert entries["scheduler", "fixed"].package == "fuzzytrack"
     assert "Llinas" in entries["tracker", "alpha-beta"].source

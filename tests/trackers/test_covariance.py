@@ -29,68 +29,87 @@ def kalman(order, velocity_sigma):
 
 
 def remembered(tracker, times, plots, sigma):
-    """The scheduler's own covariance after every step, upper triangle row by row."""
+    """The scheduler's own covariance after every step, upper triangle row by row, and states."""
     state = tracker.start(plots[0], times[0], sigma[0])
     states = [state]
     for z, t, s in zip(plots[1:], times[1:], sigma[1:], strict=True):
         state = tracker.step(state, z, t, s)
         states.append(state)
     rows = state.rows
-    return np.array([s.lanes[rows.memory + 1 : rows.state - 1, 0] for s in states])
+    return np.array([s.lanes[rows.memory + 1 : rows.state - 1, 0] for s in states]), states
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("order", [2, 3])
 @pytest.mark.parametrize(
     ("start", "velocity_sigma"), [("one-point", 9.0), ("one-point", None), ("two-point", None)]
 )
-def test_it_is_what_a_kalman_scheduler_remembers(order, start, velocity_sigma):
+def test_it_is_what_a_kalman_scheduler_remembers(order, start, velocity_sigma, missed):
     times, plots, sigma = record()
     scheduler, others = kalman(order, velocity_sigma)
-    tracker = AlphaBetaTracker(scheduler, start)
+    tracker = AlphaBetaTracker(scheduler, start, missed)
     found = track_covariance(
-        tracker.run(times, plots, sigma), sigma, 0.7, velocity_sigma=velocity_sigma, **others
-    )
+        tracker.run(times, plots, sigma), sigma, 0.7,
+        velocity_sigma=velocity_sigma, missed=missed, **others,
+    )  # fmt: skip
     known = 2 if velocity_sigma is None else 0
     assert np.isnan(found.filtered[:known]).all()
     assert np.isnan(found.predicted[: known + 1]).all()
     above = found.filtered[:, *np.triu_indices(order)]
-    wanted = remembered(tracker, times, plots, sigma)
-    assert above[known:] == pytest.approx(wanted[known:], rel=1e-9)
+    wanted, states = remembered(tracker, times, plots, sigma)
+    # A missed plot leaves the memory alone if time counts from the last one.
+    kept = ~np.isnan(plots) | (missed == "step")
+    kept[:known] = False
+    assert above[kept] == pytest.approx(wanted[kept], rel=1e-9)
     below = found.filtered[:, *np.triu_indices(order)[::-1]]
     assert below[known:] == pytest.approx(above[known:], rel=1e-9)
+    coasted = np.flatnonzero(np.isnan(plots[known + 1 :])) + known + 1
+    assert len(coasted) > 4
+    for k in coasted:
+        variance = tracker.predict(states[k - 1], times[k]).position_variance
+        assert found.filtered[k, 0, 0] == pytest.approx(variance, rel=1e-9)
+    np.testing.assert_array_equal(found.filtered[coasted], found.predicted[coasted])
 
 
-def simulated(order, times, sigma, missed, tracks, start_sigmas, seed):
-    """True states, shape (n_steps, tracks, order), and plots of what the model describes."""
+def simulated(order, times, sigma, missing, tracks, start_sigmas, seed, missed):
+    """True states, shape (n_steps, tracks, order), and plots of what the model describes.
+
+    A push lasts from one step of the model to the next one: from plot to plot, or from row to row.
+    """
     random = np.random.default_rng(seed)
     state = random.normal(size=(tracks, order)) * np.array([500.0, *start_sigmas])
-    states = [state]
-    for dt in np.diff(times):
+    states, last, noise = [state], 0, random.normal(0, 0.7, (tracks, 1))
+    for k in range(1, len(times)):
+        dt = times[k] - times[last]
         move = np.array([[1, dt, dt * dt / 2], [0, 1, dt], [0, 0, 1]])[:order, :order]
         push = np.array([dt * dt / 2, dt, 1.0])[:order]
-        state = state @ move.T + push * random.normal(0, 0.7, (tracks, 1))
-        states.append(state)
+        states.append(state @ move.T + push * noise)
+        if k not in missing or missed == "step":
+            state, last, noise = states[-1], k, random.normal(0, 0.7, (tracks, 1))
     truth = np.array(states)
     plots = truth[..., 0] + sigma[:, None] * random.normal(size=truth.shape[:2])
-    plots[missed] = np.nan
+    plots[missing] = np.nan
     return truth, plots[..., None]
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("start", ["one-point", "two-point"])
 @pytest.mark.parametrize("gains", [ALPHA_BETA, ALPHA_BETA_GAMMA], ids=["ab", "abg"])
-def test_errors_of_simulated_tracks_have_it(gains, start):
+def test_errors_of_simulated_tracks_have_it(gains, start, missed):
     tracks, order = 4000, 2 + (gains.gamma > 0)
     times = np.array([0.0, 1.0, 2.5, 3.0, 5.0, 6.0, 6.8, 8.0])
     sigma = np.array([3.0, 5.0, 2.0, 4.0, 1.0, 3.0, 6.0, 2.0])
-    missed = [1, 5]
-    truth, plots = simulated(order, times, sigma, missed, tracks, (9.0, 0.4)[: order - 1], seed=7)
-    result = AlphaBetaTracker(gains, start).run(times, plots)
+    truth, plots = simulated(
+        order, times, sigma, [1, 5, 6], tracks, (9.0, 0.4)[: order - 1], 7, missed
+    )
+    result = AlphaBetaTracker(gains, start, missed).run(times, plots)
     found = track_covariance(
         result,
         sigma[:, None, None],
         0.7,
         velocity_sigma=9.0 if start == "one-point" else None,
         acceleration_sigma=0.4 if order == 3 else None,
+        missed=missed,
     )
     outputs = (result.filtered, result.velocity, result.acceleration)[:order]
     errors = np.concatenate(outputs, axis=-1) - truth
@@ -238,6 +257,7 @@ def run(gains=ALPHA_BETA, start="two-point", **others):
         ({"sigma_v": -1.0}, "sigma_v must be finite and >= 0, got -1"),
         ({"velocity_sigma": np.inf}, "velocity_sigma must be finite and >= 0, got inf"),
         ({"acceleration_sigma": -2.0}, "acceleration_sigma must be finite and >= 0, got -2"),
+        ({"missed": "late"}, "missed: unknown 'late'; one of elapsed, step"),
     ],
 )
 def test_standard_deviations_out_of_range(arguments, message):
@@ -248,6 +268,15 @@ def test_standard_deviations_out_of_range(arguments, message):
 def test_a_one_point_start_needs_the_velocity():
     with pytest.raises(ValueError, match="velocity_sigma: a one-point start needs"):
         track_covariance(run(start="one-point"), 1.0, 1.0)
+
+
+@pytest.mark.parametrize(("mode", "other"), [("elapsed", "step"), ("step", "elapsed")])
+def test_time_counts_as_for_the_tracker(mode, other):
+    times, plots, _ = record()
+    result = AlphaBetaTracker(ALPHA_BETA, missed=mode).run(times, plots)
+    track_covariance(result, 1.0, 1.0, missed=mode)
+    with pytest.raises(ValueError, match="do not follow from its gains"):
+        track_covariance(result, 1.0, 1.0, missed=other)
 
 
 def test_gamma_needs_the_acceleration():
@@ -282,6 +311,8 @@ def test_a_member_of_a_batch_without_its_state_is_refused_where_it_matters():
 def test_a_fading_acceleration_is_refused():
     @dataclass(frozen=True)
     class Fading(GainScheduler):
+        uses_retention = True
+
         def kernel(self, n_axes):
             return lambda innovation, change, dt, sigma, memory: (0.6, 0.3, 0.1, 0.9, memory)
 

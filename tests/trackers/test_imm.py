@@ -33,7 +33,8 @@ def plots(seed, n_axes, steps=60):
 def textbook(tracker, times, z, sigma):
     """The cycle of section 11.6.6, in matrices over one state of all axes, (x, v, a) by axis.
 
-    Between axes nothing is kept of the covariance, and a probability is at least 1e-12.
+    Between axes nothing is kept of the covariance, and a probability is at least 1e-12. A missed
+    plot leaves no trace if time counts from the last plot: probabilities are then those after it.
     """
     n_axes = z.shape[1]
     order = 3 * n_axes
@@ -50,11 +51,12 @@ def textbook(tracker, times, z, sigma):
     sigmas = [tracker.quiet_sigma, tracker.maneuver_sigma]
     start_acceleration = [0.0, tracker.maneuver_sigma**2 * accelerates[1]]
     x = p = None
-    count, last = 0, 0.0
+    count, last, now = 0, 0.0, None
     history = {name: [] for name in ("predicted", "filtered", "velocity", "acceleration", "mu")}
     history["variance"] = []
     for k in range(len(times)):
-        dt = times[k] - times[k - 1] if k else 1.0
+        dt = times[k] - now if count else 1.0
+        before = x and list(x), p and list(p), mu
         seen = not np.isnan(z[k]).any()
         r = np.diag(sigma[k] ** 2)
         predicted = np.full(n_axes, np.nan)
@@ -112,13 +114,17 @@ def textbook(tracker, times, z, sigma):
         history["filtered"].append(mean[0::3])
         history["velocity"].append(np.nan_to_num(mean[1::3]))
         history["acceleration"].append(np.nan_to_num(mean[2::3]))
-        history["mu"].append(mu[1])
         total = np.full((order, order), np.nan)
         # Coasted with an unknown velocity, a position has no variance.
         if x is not None and (seen or count == 2):
             apart = [x[j] - mean for j in (0, 1)]
             total = sum(mu[j] * (p[j] + np.outer(apart[j], apart[j])) for j in (0, 1))
         history["variance"].append(np.diag(total)[0::3])
+        if seen or tracker.missed == "step":
+            now = times[k]
+        else:
+            x, p, mu = before
+        history["mu"].append(mu[1])
     return {name: np.array(values) for name, values in history.items()}
 
 
@@ -146,16 +152,18 @@ def assert_textbook(tracker, times, z, sigma, part=slice(None)):
     assert np.ptp(probabilities) > 0.5
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("n_axes", [1, 2, 3])
 @pytest.mark.parametrize("maneuver", ["ca", "cv"])
-def test_joint_axes_are_the_textbook_cycle(maneuver, n_axes):
-    tracker = InteractingPair(0.1, 2.0, 0.93, 0.88, maneuver=maneuver)
+def test_joint_axes_are_the_textbook_cycle(maneuver, n_axes, missed):
+    tracker = InteractingPair(0.1, 2.0, 0.93, 0.88, maneuver=maneuver, missed=missed)
     assert_textbook(tracker, *plots(n_axes, n_axes))
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("maneuver", ["ca", "cv"])
-def test_each_axis_by_itself_is_the_textbook_cycle(maneuver):
-    tracker = InteractingPair(0.1, 2.0, 0.93, 0.88, maneuver=maneuver, joint=False)
+def test_each_axis_by_itself_is_the_textbook_cycle(maneuver, missed):
+    tracker = InteractingPair(0.1, 2.0, 0.93, 0.88, maneuver=maneuver, joint=False, missed=missed)
     for axis in (0, 1):
         assert_textbook(tracker, *plots(4, 2), slice(axis, axis + 1))
 
@@ -311,8 +319,9 @@ def test_the_variance_of_a_prediction_by_chance(dt):
 
 @pytest.mark.parametrize("maneuver", ["ca", "cv"])
 @pytest.mark.parametrize("joint", [True, False])
-def test_the_variance_of_a_prediction_is_that_after_missed_plots(maneuver, joint):
-    tracker = InteractingPair(0.1, 2.0, maneuver=maneuver, joint=joint)
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
+def test_the_variance_of_a_prediction_is_that_after_missed_plots(maneuver, joint, missed):
+    tracker = InteractingPair(0.1, 2.0, maneuver=maneuver, joint=joint, missed=missed)
     random = np.random.default_rng(8)
     z, sigma = random.normal(size=(12, 4, 2)) * 5, random.uniform(1.0, 4.0, (12, 4, 2))
     z[[4, 7, 7], [1, 2, 3], [0, 1, 0]] = np.nan
@@ -413,6 +422,7 @@ def test_probabilities_and_covariances(sigmas, stays, maneuver, steps):
         ({"velocity_sigma": 0.0}, "velocity_sigma must be finite and > 0, got 0"),
         ({"acceleration_sigma": -1.0}, "acceleration_sigma must be finite and >= 0, got -1"),
         ({"maneuver": "turn"}, "maneuver: unknown 'turn'; one of ca, cv"),
+        ({"missed": "late"}, "missed: unknown 'late'; one of elapsed, step"),
         ({"maneuver": "cv", "acceleration_sigma": 1.0}, "acceleration_sigma: only a model 'ca'"),
         ({"quiet_sigma": [1.0, 2.0]}, "quiet_sigma must be one number"),
     ],

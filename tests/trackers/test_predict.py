@@ -44,6 +44,22 @@ def test_a_line_through_two_plots_by_hand():
     assert found.innovation_variance == pytest.approx(found.position_variance + 4.0)
 
 
+def test_missed_plots_do_not_change_a_prediction():
+    """One jump over the whole gap, whatever was asked before; noise comes once from plot to plot.
+
+    P₁₁ after two plots of σ = 3 over 1 s is 9, and P₁₂ is 9; P₂₂ is 18 and a quarter of the noise.
+    """
+    tracker = AlphaBetaTracker(KalmanCV(2.0))
+    state = tracker.run([0.0, 1.0], [10.0, 14.0], 3.0).state
+    coasted = tracker.step(state, math.nan, 2.5, 1.0)
+    assert (coasted.time, coasted.position, coasted.velocity) == (2.5, 20.0, 4.0)
+    for known in (state, coasted):
+        found = tracker.predict(known, 4.0)
+        assert (found.position, found.velocity) == (26.0, 4.0)
+        expected = 9 + 2 * 3 * 9 + 9 * (18 + 1.0) + 4.0 * 4.5**2
+        assert found.position_variance == pytest.approx(expected)
+
+
 def test_acceleration_carries_on():
     tracker = AlphaBetaTracker(FixedGains(0.5, 0.4, 0.2))
     state = tracker.run([0.0, 1.0, 2.0, 4.0], [0.0, 1.0, 4.0, 15.0]).state
@@ -55,22 +71,23 @@ def test_acceleration_carries_on():
     )
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("gaps", [[1.0], [0.3, 2.0, 0.7]])
-def test_the_variance_is_what_missed_plots_lead_to(gaps):
+def test_the_variance_is_what_missed_plots_lead_to(gaps, missed):
     """Once the plots have gone, the covariance of a run is the one before the next of them."""
     random = np.random.default_rng(4)
     t = np.cumsum(random.uniform(0.5, 2.0, 12))
     z, sigma = random.normal(size=(12, 3, 2)), random.uniform(0.5, 3.0, (12, 3, 2))
-    tracker = AlphaBetaTracker(KalmanCA(0.3, 2.0))
+    tracker = AlphaBetaTracker(KalmanCA(0.3, 2.0), missed=missed)
     state = tracker.run(t, z, sigma).state
     *before, later = t[-1] + np.cumsum(gaps)
     for time in before:
         state = tracker.step(state, np.full((3, 2), math.nan), time, 1.0)
     found = tracker.predict(state, later, sigma=[2.0, 5.0])
 
-    missed = np.full((len(gaps), 3, 2), math.nan)
-    whole = tracker.run([*t, *before, later], np.concatenate([z, missed]), [*sigma, *missed])
-    known = track_covariance(whole, [*sigma, *missed], 0.3, acceleration_sigma=2.0)
+    none = np.full((len(gaps), 3, 2), math.nan)
+    whole = tracker.run([*t, *before, later], np.concatenate([z, none]), [*sigma, *none])
+    known = track_covariance(whole, [*sigma, *none], 0.3, acceleration_sigma=2.0, missed=missed)
     expected = known.predicted[-1, ..., 0, 0]
     np.testing.assert_allclose(found.position_variance, expected, rtol=1e-12)
     np.testing.assert_allclose(
@@ -78,13 +95,15 @@ def test_the_variance_is_what_missed_plots_lead_to(gaps):
     )
 
 
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("opening", ["", ", opening: growing-memory"])
-def test_the_normalization_tells_what_noise_has_left(opening):
-    tracker = AlphaBetaTracker(FuzzyScheduler(loads_rulebase(PREDICTED % opening)))
+def test_the_normalization_tells_what_noise_has_left(opening, missed):
+    tracker = AlphaBetaTracker(FuzzyScheduler(loads_rulebase(PREDICTED % opening)), missed=missed)
     random = np.random.default_rng(5)
     t, z = np.cumsum(random.uniform(0.5, 2.0, 20)), random.normal(size=(20, 2))
     z[[7, 11], [0, 1]] = math.nan
-    known = track_covariance(tracker.run(t, z, 1.5), 1.5, 0.0).innovation_variance
+    whole = tracker.run(t, z, 1.5)
+    known = track_covariance(whole, 1.5, 0.0, missed=missed).innovation_variance
     state, seen = tracker.start(z[0], t[0], 1.5), 0
     for k in range(1, 20):
         found = tracker.predict(state, t[k], 1.5).innovation_variance

@@ -6,14 +6,23 @@ import numpy as np
 import pytest
 from recorded_cases import CASES, INPUTS, LANES, OUTPUTS, tracker_of
 from recorded_file import load, save
-from recorded_results import complaints, first_difference, recorded, replays
+from recorded_results import (
+    Replay,
+    complaints,
+    first_difference,
+    recorded,
+    replays,
+    track,
+    whole,
+)
 
 from fuzzytrack.trackers.catalog import catalog
 
 pytestmark = pytest.mark.untraced
 
-#: Parameters that all trackers are made with, as ``:name=value``.
-OPTIONS = ""
+#: Parameters that all trackers are made with, as ``:name=value``. When the file was recorded, time
+#: counted from step to step.
+OPTIONS = ":missed=step"
 
 recording = cache(load)
 
@@ -36,6 +45,13 @@ def test_it_gives_the_recorded_numbers(case):
             assert (replay.calls < replay.lane_steps) == replay.compiled, (replay.way, replay.calls)
             proved.add((replay.inputs, replay.dtype, replay.compiled))
     assert proved == {(name, *way) for name in INPUTS for way in ways_proved(case)}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_without_missed_plots_time_may_count_from_plot_to_plot(case):
+    found = whole(track(case, tracker_of(case), INPUTS["plain"], "float64"))
+    outputs = recording()[case.name]["plain", "float64"]
+    assert not complaints(case, Replay("plain", "float64", "plot to plot", found), outputs)
 
 
 def test_the_file_has_the_cases_of_the_list():

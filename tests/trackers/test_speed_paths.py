@@ -59,10 +59,9 @@ def run_plain(tracker, times, plots):
     """All outputs of the plain run, a part of the tracks at a time so that nothing compiles."""
     core = runner(tracker, 2 if tracker.coupled else 1)
     shape = (len(plots), -1, core.rows.n_axes)
-    dts = np.diff(times, prepend=times[0])[:, None]
     lanes = plots.reshape(shape)
     nowhere = np.full((1, 1, 1), np.nan)
-    return core(core.fresh(lanes.shape[1]), lanes, dts, nowhere, native=False)
+    return core(core.fresh(lanes.shape[1]), lanes, times[:, None], nowhere, native=False)
 
 
 @pytest.mark.parametrize("name", TRACKERS)
@@ -271,12 +270,12 @@ def plain_step(core, state, z, t, sigma):
     """Lanes after a step in plain Python."""
     count, n_axes = state.lanes.shape[1], core.rows.n_axes
     tracks = z.shape[:-1]
-    dts = np.broadcast_to(t - state.time, tracks).ravel()
+    times = np.broadcast_to(t, tracks).ravel()
     sigmas = np.broadcast_to(np.nan if sigma is None else sigma, z.shape)
     return core.step(
         state.lanes,
         z.reshape(count, n_axes),
-        np.repeat(dts, count // tracks[0]).tolist(),
+        np.repeat(times, count // tracks[0]).tolist(),
         sigmas.reshape(count, n_axes).tolist(),
     )
 
@@ -360,7 +359,7 @@ def test_scratch_begins_with_a_line_of_the_cache():
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_several_lanes_are_worked_on_at_once(name, dtype, monkeypatch):
     monkeypatch.setenv("FUZZYTRACK_CACHE_DIR", "off")
-    code = entry_point(TRACKERS[name].program(1).steady(BLOCK, False), "vpixpp", dtype)
+    code = entry_point(TRACKERS[name].program(1).steady(BLOCK, False, True), "vpixpp", dtype)
     assembly = code._library.get_asm_str()
     kind = "pd" if dtype is np.float64 else "ps"
     assert f"mul{kind}" in assembly

@@ -16,18 +16,23 @@ from fuzzytrack.trackers.window_search import WindowSearch
 
 
 def corrected(x, v, z, gap, dt, alpha):
-    """State after a plot, of that after the plot before; and the innovation."""
+    """State after a plot, of that after the plot before, and the innovation; β counts per dt."""
     e = z - (x + v * gap)
     return x + v * gap + alpha * e, v + alpha**2 / (2 - alpha) / dt * e, e
 
 
-def literal_search(times, plots, window, alpha, grid):
+def literal_search(times, plots, window, alpha, grid, mode):
     """Predictions and α of one axis: states are looked up, and every window is run anew."""
     seen = np.flatnonzero(~np.isnan(plots))
     predicted, alphas = np.full(len(plots), np.nan), np.full(len(plots), np.nan)
     first, second = seen[:2]
     v = (plots[second] - plots[first]) / (times[second] - times[first])
     states = {second: (plots[second], v)}
+
+    def spans(last, now):
+        gap = times[now] - times[last]
+        return gap, gap if mode == "elapsed" else times[now] - times[now - 1]
+
     for k in range(second + 1, len(plots)):
         before = [j for j in seen if j < k]
         x, v = states[before[-1]]
@@ -35,8 +40,7 @@ def literal_search(times, plots, window, alpha, grid):
         if k not in seen:
             continue
         alphas[k] = alpha
-        gap, dt = times[k] - times[before[-1]], times[k] - times[k - 1]
-        *state, _ = corrected(x, v, plots[k], gap, dt, alpha)
+        *state, _ = corrected(x, v, plots[k], *spans(before[-1], k), alpha)
         states[k] = tuple(state)
         used = [*before, k]
         if len(used) - 2 < window:
@@ -46,8 +50,7 @@ def literal_search(times, plots, window, alpha, grid):
             x, v = states[used[-window - 1]]
             total = 0.0
             for last, now in zip(used[-window - 1 :], used[-window:], strict=False):
-                gap, dt = times[now] - times[last], times[now] - times[now - 1]
-                x, v, e = corrected(x, v, plots[now], gap, dt, candidate)
+                x, v, e = corrected(x, v, plots[now], *spans(last, now), candidate)
                 total += e**2
             sums.append(total)
         alpha = grid[int(np.argmin(sums))]
@@ -60,16 +63,17 @@ def literal_search(times, plots, window, alpha, grid):
     window=st.integers(2, 12),
     grid_step=st.sampled_from([0.05, 0.1, 0.3, 1.0]),
     missed=st.sampled_from([0.0, 0.3]),
+    mode=st.sampled_from(["elapsed", "step"]),
 )
-def test_equals_the_literal_search(seed, window, grid_step, missed):
+def test_equals_the_literal_search(seed, window, grid_step, missed, mode):
     random = np.random.default_rng(seed)
     times = np.cumsum(random.uniform(0.5, 2.0, 30))
     plots = np.cumsum(np.cumsum(random.normal(0, 3, 30))) + random.normal(0, 10, 30)
     plots[random.random(30) < missed] = np.nan
-    tracker = WindowSearch(window, 0.2, grid_step)
+    tracker = WindowSearch(window, 0.2, grid_step, mode)
     result = tracker.run(times, plots)
     grid = np.arange(1, int(1 / grid_step + 1e-9) + 1) * grid_step
-    predicted, alphas = literal_search(times, plots, window, 0.2, grid)
+    predicted, alphas = literal_search(times, plots, window, 0.2, grid, mode)
     np.testing.assert_allclose(tracker.grid, grid, rtol=1e-15)
     np.testing.assert_allclose(result.gains.alpha, alphas, rtol=1e-12)
     np.testing.assert_allclose(result.predicted, predicted, rtol=1e-9, atol=1e-9)
@@ -131,6 +135,7 @@ def test_from_a_word():
         ({"alpha": 0.0}, "alpha must be > 0"),
         ({"grid_step": 0.0}, "grid_step must be > 0 and <= 1, got 0"),
         ({"grid_step": 1.5}, "grid_step must be > 0 and <= 1, got 1.5"),
+        ({"missed": "late"}, "missed: unknown 'late'; one of elapsed, step"),
     ],
 )
 def test_bad_parameters(parameters, message):
@@ -144,8 +149,8 @@ def published_errors(tracker, noise, runs, native):
     z = noise.measure(truth, streams(1, runs)).z
     core = runner(tracker, 1)
     outputs = core(
-        core.fresh(2 * runs), z.reshape(100, 2 * runs, 1), np.diff(times, prepend=0.0)[:, None],
-        np.full((1, 1, 1), np.nan), native=native,
+        None, z.reshape(100, 2 * runs, 1), times[:, None], np.full((1, 1, 1), np.nan),
+        native=native,
     )[1]  # fmt: skip
     errors = outputs["predicted"].reshape(z.shape) - truth[:, None]
     return np.sqrt(np.sum(errors[2:] ** 2, axis=0) / len(truth))
