@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from fuzzytrack.arrays import Mask
 from fuzzytrack.lanes.runner import Runner
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.testing.kernel_words import foreign_word
@@ -195,7 +194,7 @@ def rows_left_out(tracker: LaneTracker, seed: int) -> None:
     n_axes = AXES if tracker.coupled else 1
     core = runner(tracker, n_axes)
     lanes, sigmas = plots.reshape(STEPS, -1, n_axes), np.full((1, 1, 1), SIGMA)
-    seen: Mask = ~np.isnan(lanes).any(axis=2)
+    seen = np.asarray(~np.isnan(lanes).any(axis=2))
     for native, dtype in ((False, np.float64), (True, np.float64), (True, np.float32)):
         given = lanes.astype(dtype)
         if dtype == np.float32 and not _fits(core, dtype):

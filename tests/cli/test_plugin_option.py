@@ -187,7 +187,7 @@ MORE = "; fuzzytrack.testing.check_scheduler or check_tracker says more"
          ":14:1: the kernel of Mistaken must take the five arguments "
          "(innovation, change, dt, sigma, memory), takes (innovation, dt, sigma, memory)"),
         ("0.2, 0.0, 1.0, memory", "0.2",
-         ":14:1: the kernel of Mistaken must return (alpha, beta, gamma, phi, memory), "
+         ":14:1: the kernel of Mistaken must return (alpha, beta, gamma, retention, memory), "
          "got (0.5, 0.2)"),
         ("0.5", "0.5 / (innovation * 0.0)",
          ":15:21: ZeroDivisionError: float division by zero, in a step of Mistaken" + MORE),
