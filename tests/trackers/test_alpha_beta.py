@@ -244,7 +244,8 @@ def test_the_acceleration_decays_until_the_next_prediction(missed):
         assert shown == pytest.approx(now, rel=1e-12)
         if seen or missed == "step":
             (x, v, a), last = now, times[k]
-            tau, turn = retention[turn % 3], turn + 1
+            # The memory is kept, and the retention time that of the last plot.
+            tau, turn = retention[turn % 3] if seen else tau, turn + 1
 
     state = tracker.start(plots[0], times[0])
     for z, t in zip(plots[1:], times[1:], strict=True):
