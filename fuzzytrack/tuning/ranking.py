@@ -225,13 +225,12 @@ def rank(
     squares = np.zeros((len(made), len(chosen), len(of), tracks))
     counts = np.zeros((len(chosen), len(of), tracks), dtype=np.int64)
     done, every = 0, len(made) * len(chosen) * len(of)
-    for tracker in made.values():
-        announce(tracker, 2, every * tracks)
     for i, variant in enumerate(chosen):
         for j, name in enumerate(of):
             plots = scored_plots(name, VARIANTS[variant], tracks, seed)
             counts[i, j] = plots.scored.sum(axis=0)
             for k, tracker in enumerate(made.values()):
+                announce(tracker, 2, plots.z.size * (every - done) // len(made))
                 squares[k, i, j] = squared_errors(tracker, plots)
                 done += 1
                 if progress is not None:
