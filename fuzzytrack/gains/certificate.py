@@ -312,9 +312,11 @@ def certify(
         sequence, elapsed = gains_tried[order], times_tried[order]
         return found("refuted", rate, sequence=sequence, elapsed=elapsed, growth=growth)
     # The rate, if there is one below 1, is between the growth that was found and 1.
-    polygon_rate, polygon = reducing_polygon(matrices, ellipse(lyapunov), (1 + growth) / 2)
-    if polygon_rate < 1 - _MARGIN:
-        return found("certified", polygon_rate, polygon=polygon)
+    for share in (0.5, 0.05):
+        aim = 1 - share * (1 - growth)
+        polygon_rate, polygon = reducing_polygon(matrices, ellipse(lyapunov), aim)
+        if polygon_rate < 1 - _MARGIN:
+            return found("certified", polygon_rate, polygon=polygon)
     return found("not decided", rate)
 
 

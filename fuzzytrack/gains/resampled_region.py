@@ -11,8 +11,8 @@ from fuzzytrack.gains.polygons import convex_hull, part_below
 
 __all__ = ["resampled_region"]
 
-_SLICES = 32
-_PARTS = 16
+_SLICES = 128
+_PARTS = 12
 
 
 def resampled_region(gains: Array, shortest: float, longest: float) -> Array:
