@@ -7,6 +7,8 @@ share them. A covariance is given by the numbers on and above its diagonal, row 
 
 from __future__ import annotations
 
+import math
+
 from fuzzytrack.gains.joseph import Covariance3, predict_ca
 
 __all__ = ["add_onset", "correct_optimally", "fade", "onset", "predict_singer"]
@@ -36,7 +38,7 @@ def predict_singer(
     return predict_ca(p11, p12, phi * p13, p22, phi * p23, phi * phi * p33, dt, 0.5 * dt * dt)
 
 
-def onset(dt: float, phi: float, delay: float, gap_rate: float) -> tuple[float, float, float]:
+def onset(dt: float, phi: float, delay: float, gaps: float) -> tuple[float, float, float]:
     """Process noise of an acceleration that began a time `delay` before the last plot.
 
     Parameters
@@ -47,17 +49,17 @@ def onset(dt: float, phi: float, delay: float, gap_rate: float) -> tuple[float, 
         Part of the acceleration that is kept over `dt`.
     delay : float
         Time by which a maneuver is older than the last plot (s), >= 0.
-    gap_rate : float
-        1/s: the noise is divided by 1 + ``dt * gap_rate``.
+    gaps : float
+        `dt` over the length of gap (1) at which the noise is halved: it is divided by 1 + `gaps`.
 
     Returns
     -------
     b, g1, g2 : float
         The noise is b·σ²·GGᵀ with G = (g1, g2, 1) = ((dt + delay)²/2, dt + delay, 1) and
-        b = (1 - φ²)/(1 + dt·gap_rate).
+        b = (1 - φ²)/(1 + gaps).
     """
     d = dt + delay
-    return (1.0 - phi * phi) / (1.0 + dt * gap_rate), 0.5 * d * d, d
+    return (1.0 - phi * phi) / (1.0 + gaps), 0.5 * d * d, d
 
 
 def add_onset(
@@ -74,17 +76,26 @@ def correct_optimally(
 ) -> tuple[float, float, float, Covariance3]:
     """Kalman gain for a plot of variance `r`, and the covariance after it.
 
+    Parameters
+    ----------
+    p11, p12, p13, p22, p23, p33 : float
+        Covariance before the plot.
+    r : float
+        Infinity where the plot is missing: the gain is then 0, and the covariance stays.
+
     Returns
     -------
     k1, k2, k3 : float
         K = P(·, 1)/(P₁₁ + r).
     covariance : tuple of float
-        P - KKᵀ(P₁₁ + r), with K₁r and (1 - K₁)P₁₂ where these are the same without a difference of
-        large numbers.
+        P - KKᵀ(P₁₁ + r), whose first row is P's times r/(P₁₁ + r): a difference of large numbers
+        would lose it after a long gap.
     """
     share = 1.0 / (p11 + r)
     k1, k2, k3 = p11 * share, p12 * share, p13 * share
-    rest = r * share
-    return k1, k2, k3, (
-        k1 * r, rest * p12, rest * p13, p22 - k2 * p12, p23 - k2 * p13, p33 - k3 * p13,
-    )  # fmt: skip
+    rest = r * share if r < math.inf else 1.0
+    n22, n33 = p22 - k2 * p12, p33 - k3 * p13
+    # In single precision, rounding can leave less than 0 after a gap of 10⁵ usual intervals.
+    n22 = n22 if n22 > 0.0 else 0.0
+    n33 = n33 if n33 > 0.0 else 0.0
+    return k1, k2, k3, (rest * p11, rest * p12, rest * p13, n22, p23 - k2 * p13, n33)

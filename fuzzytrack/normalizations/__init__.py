@@ -5,6 +5,7 @@ from fuzzytrack.normalizations.chan import Chan, ChanMagnitude, ChanSigned
 from fuzzytrack.normalizations.predicted import Predicted
 from fuzzytrack.normalizations.scale import Scale
 from fuzzytrack.normalizations.smoothed import Smoothed, SmoothedMagnitude
+from fuzzytrack.normalizations.surprise import Surprise
 
 __all__ = [
     "Chan",
@@ -15,5 +16,6 @@ __all__ = [
     "Scale",
     "Smoothed",
     "SmoothedMagnitude",
+    "Surprise",
     "normalizations",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from fuzzytrack.kernels.language import Memory
@@ -29,6 +29,12 @@ class Normalization(ABC):
         Paper, or other origin.
     signals : tuple of str
         What the kernel returns, in order; a rule base takes its inputs from them, first to first.
+    numbers : mapping of str to str
+        Numbers that its constructor takes, and what each is, for the JSON Schema of rule bases.
+    uses_expectation : bool
+        Whether the kernel gets, as `dt` and `sigma`, the time step in the unit of the conversion
+        and the variance that it expects of the innovation of each axis on a straight run, infinity
+        where it expects nothing. This needs the conversion ``covariance``.
     coupled, needs_sigma, sees_starts, sees_misses : bool
     variance_start : str or None
         As for a `fuzzytrack.schedulers.base.GainScheduler`.
@@ -38,13 +44,15 @@ class Normalization(ABC):
     The numbers that its constructor takes can be given next to its name in the scheduler settings
     of a rule base.
 
-    If the rule base opens with a growing memory, a normalization is called with zeros at the first
-    plot of a track, and at the second if velocity starts from it, even if it does not see
-    starts.
+    If the rule base opens with a growing memory, or the conversion has a covariance, a
+    normalization is called with zeros at the first plot of a track, and at the second if velocity
+    starts from it, even if it does not see starts.
     """
 
     source: ClassVar[str] = ""
     signals: ClassVar[tuple[str, ...]] = ()
+    numbers: ClassVar[Mapping[str, str]] = {}
+    uses_expectation: ClassVar[bool] = False
     coupled: ClassVar[bool] = False
     needs_sigma: ClassVar[bool] = False
     sees_starts: ClassVar[bool] = False

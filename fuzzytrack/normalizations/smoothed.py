@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -12,6 +12,8 @@ from fuzzytrack.kernels.language import Memory
 from fuzzytrack.normalizations.base import Normalization, Normalize, normalizations
 
 __all__ = ["Smoothed", "SmoothedMagnitude"]
+
+RHO = {"rho": "Part of the smoothed innovation that stays at a plot."}
 
 
 def _check_rho(rho: float) -> float:
@@ -44,6 +46,7 @@ class Smoothed(Normalization):
 
     source: ClassVar[str] = "innovation scaled by measurement noise, exponentially smoothed"
     signals: ClassVar[tuple[str, ...]] = ("smoothed scaled innovation", "scaled innovation")
+    numbers: ClassVar[Mapping[str, str]] = RHO
     needs_sigma: ClassVar[bool] = True
 
     rho: float = 0.774
@@ -120,6 +123,7 @@ class SmoothedMagnitude(Normalization):
         "magnitude of smoothed scaled innovation",
         "magnitude of scaled innovation",
     )
+    numbers: ClassVar[Mapping[str, str]] = RHO
     coupled: ClassVar[bool] = True
     needs_sigma: ClassVar[bool] = True
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import count
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,11 +17,12 @@ from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.gains.period import pair_after, pair_rates
 from fuzzytrack.normalizations import Normalization
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
-from fuzzytrack.schedulers.gain_outputs import Conversion, GainOutputs
+from fuzzytrack.schedulers.converter import Converter, seen_by
+from fuzzytrack.schedulers.gain_outputs import ConvertedOutputs
 from fuzzytrack.schedulers.growing_memory import least_squares_gains
+from fuzzytrack.schedulers.maneuver_covariance import AXES
 from fuzzytrack.schedulers.settings import SchedulerSettings, check_period, read_settings
 
 __all__ = ["FuzzyScheduler"]
@@ -38,11 +39,12 @@ class FuzzyScheduler(GainScheduler):
         A rule base; or the name of a shipped one or the path of a file, as for
         `fuzzytrack.load_rulebase`. Its outputs are ``stiffness`` and ``damping`` (gains through the
         w-domain, always stable); or ``stiffness`` alone (damping on Kalata's curve,
-        ζ² = 1/2 + ω₀²/4); or ``alpha``, ``beta`` and maybe ``gamma`` (the gains themselves). Its
-        scheduler settings name which: ``gains: w-domain``, ``kalata`` or ``direct``. They also name
-        the ``normalization`` that makes its inputs, with the numbers that this takes
-        (``rho: 0.8``). With ``opening: growing-memory`` a new track has the gains of a line fitted
-        to all its plots, as long as their α is larger than that of the rules.
+        ζ² = 1/2 + ω₀²/4); or ``alpha``, ``beta`` and maybe ``gamma`` (the gains themselves); or
+        ``noise`` and ``retention`` of a maneuver, for a covariance from which the gains follow. Its
+        scheduler settings name which: ``gains: w-domain``, ``kalata``, ``direct`` or
+        ``covariance``. They also name the ``normalization`` that makes its inputs, with the numbers
+        that these take (``rho: 0.8``). With ``opening: growing-memory`` a new track has the gains
+        of a line fitted to all its plots, as long as their α is larger than that of the rules.
     method : {"exact", "relation", "table"}
         As for `fuzzytrack.fuzzy.system.FuzzySystem`.
     period : float, optional
@@ -50,6 +52,16 @@ class FuzzyScheduler(GainScheduler):
         base unless given. At other time steps the tracker uses the gains of the same filter in
         continuous time, see `fuzzytrack.gains.resampled_gains`. With neither, the gains are
         the same whatever the time step. An opening is not converted.
+    level : float, optional
+        Strongest maneuver expected (m/s²), > 0; of ``gains: covariance`` only, as are those below.
+        Without it the noise and the intervals of the plots say what is strong.
+    velocity_sigma : float, optional
+        Standard deviation of the velocity of a new track (m/s), > 0, about 0: for the tracker's
+        start ``one-point``, and with a `level`. Without it, velocity comes from the first two
+        plots.
+    axes : {"shared", "own"}
+        One covariance for all axes of a track, with the mean variance of a plot; or one for each
+        axis, for plots whose noise differs much between axes.
 
     Raises
     ------
@@ -60,12 +72,14 @@ class FuzzyScheduler(GainScheduler):
     TypeError
         If `rules` is something else.
     ValueError
-        If the method cannot be used with the rule base.
+        If the method cannot be used with the rule base, a parameter is out of range, or the rule
+        base does not use it.
 
     Notes
     -----
     Llinas et al. (1998), chapter 3; with a coupled normalization, Chan's scheme. The memory is that
-    of the normalization; with an opening, the number of plots stands before it.
+    of the normalization and that of the conversion to gains; with an opening, the number of plots
+    stands before it.
     """
 
     source: ClassVar[str] = "Llinas et al. (1998), chapter 3"
@@ -73,6 +87,9 @@ class FuzzyScheduler(GainScheduler):
     rules: RuleBase
     method: str = "exact"
     period: float | None = None
+    level: float | None = None
+    velocity_sigma: float | None = None
+    axes: str = "shared"
     settings: SchedulerSettings = field(init=False, repr=False, compare=False)
 
     def __init__(
@@ -80,6 +97,9 @@ class FuzzyScheduler(GainScheduler):
         rules: RuleBase | str | os.PathLike[str],
         method: str = "exact",
         period: float | None = None,
+        level: float | None = None,
+        velocity_sigma: float | None = None,
+        axes: str = "shared",
     ) -> None:
         rules = as_rulebase(rules)
         object.__setattr__(self, "rules", rules)
@@ -91,12 +111,32 @@ class FuzzyScheduler(GainScheduler):
             object.__setattr__(self, "period", float(period))
             check_period(rules, self.outputs, float(period))
         _never_silent(self.rules, self.system)
-        # Made here, since not every rule base can be compiled.
-        _ = self.inference
+        for name, value in (("level", level), ("velocity_sigma", velocity_sigma), ("axes", axes)):
+            object.__setattr__(self, name, value)
+        # Made here with the inference, since not every rule base can be compiled.
+        _ = self.converter
+
+    @cached_property
+    def converter(self) -> Converter:
+        """The outputs' conversion to gains, with the numbers and parameters that it takes."""
+        outputs = self.settings.outputs
+        options = ("period", "level", "velocity_sigma")
+        given = {name: getattr(self, name) for name in options}
+        given = {name: value for name, value in given.items() if value is not None}
+        if self.axes != AXES[0]:
+            given["axes"] = self.axes
+        for name in given:
+            if name not in outputs.parameters:
+                raise ValueError(
+                    f"{name}: {self.rules.name} does not use it; it is for rule bases with "
+                    f"gains: covariance, and this one has gains: {outputs.setting}"
+                )
+        quiet = self.inference((0.0,) * len(self.rules.inputs))
+        return outputs.converter(self.rules.output_names, quiet, **self.settings.numbers, **given)
 
     def __getstate__(self) -> dict[str, Any]:
-        # Tables are large, and both are quickly made again where they are needed.
-        made = ("system", "inference")
+        # Tables are large, and all are quickly made again where they are needed.
+        made = ("system", "inference", "converter")
         return {key: value for key, value in vars(self).items() if key not in made}
 
     @property
@@ -105,7 +145,7 @@ class FuzzyScheduler(GainScheduler):
         return self.settings.normalization
 
     @property
-    def outputs(self) -> GainOutputs:
+    def outputs(self) -> ConvertedOutputs:
         """Conversion of its outputs to gains."""
         return self.settings.outputs
 
@@ -116,13 +156,13 @@ class FuzzyScheduler(GainScheduler):
 
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
-        """Whether plots need a standard deviation; from the normalization."""
-        return self.normalization.needs_sigma
+        """Whether plots need a standard deviation; from normalization and conversion."""
+        return self.normalization.needs_sigma or self.converter.needs_sigma
 
     @property
     def sees_starts(self) -> bool:  # type: ignore[override]
-        """Whether the first plots of a track are followed: for the normalization, or to count."""
-        return self.opens or self.normalization.sees_starts
+        """Whether the first plots of a track are followed: for its parts, or to count plots."""
+        return self.opens or self.normalization.sees_starts or self.converter.sees_starts
 
     @property
     def sees_misses(self) -> bool:  # type: ignore[override]
@@ -131,13 +171,21 @@ class FuzzyScheduler(GainScheduler):
 
     @property
     def variance_start(self) -> str | None:  # type: ignore[override]
-        """Start after which the variance of a prediction holds; from the normalization."""
-        return self.normalization.variance_start
+        """Start after which the variance of a prediction holds; from normalization or conversion.
+
+        Only one of them has a covariance.
+        """
+        return self.normalization.variance_start or self.converter.variance_start
 
     @property
     def uses_acceleration(self) -> bool:  # type: ignore[override]
-        """Whether the rule base gives γ."""
-        return "gamma" in self.outputs.gain_names
+        """Whether γ can be other than 0."""
+        return self.outputs.uses_acceleration
+
+    @property
+    def uses_retention(self) -> bool:  # type: ignore[override]
+        """Whether the acceleration fades; from the conversion."""
+        return self.converter.uses_retention
 
     @property
     def opens(self) -> bool:
@@ -155,45 +203,86 @@ class FuzzyScheduler(GainScheduler):
         return infer_function(self.system)
 
     def initial_memory(self, n_axes: int) -> Memory:
-        """Memory of the normalization; with an opening, after the number of plots."""
-        own = self.normalization.initial_memory(n_axes)
-        return (0.0, *own) if self.opens else own
+        """Memory of the normalization and of the conversion; with an opening, after the count."""
+        own = self.normalization.initial_memory(n_axes), self.converter.initial_memory(n_axes)
+        return (*((0.0,) if self.opens else ()), *own[0], *own[1])
 
     def prediction_variance(self, memory: Any, dt: Any) -> Any:
         """Variance of a predicted position; see `GainScheduler.prediction_variance`."""
-        own = memory[1:] if self.opens else memory
-        return self.normalization.prediction_variance(own, dt)
+        if not self.outputs.has_covariance:
+            own = memory[1:] if self.opens else memory
+            return self.normalization.prediction_variance(own, dt)
+        n_axes = next(n for n in count(1) if len(self.initial_memory(n)) == len(memory))
+        kept = memory[len(self.normalization.initial_memory(n_axes)) :]
+        return self.converter.prediction_variance(kept, dt)
 
     def kernel(self, n_axes: int) -> Kernel:
         """Normalize, infer, convert to gains; see `GainScheduler.kernel`."""
-        normalize = self.normalization.kernel(n_axes)
+        return self._opening_kernel(n_axes) if self.opens else self._kernel(n_axes)
+
+    def _kernel(self, n_axes: int) -> Kernel:
+        normalize = self._normalize(n_axes)
         infer = self.inference
-        to_gains = _at_time_step(self.outputs.conversion(self.rules.output_names), self.period)
+        expect = self.converter.expect(n_axes, self.coupled)
+        convert = self.converter.convert(n_axes, self.coupled)
         feedback = self.normalization.feedback(n_axes) or _unchanged
+        n_own = len(self.normalization.initial_memory(n_axes))
+        is_seen = seen_by(self.coupled)
+        # Only a conversion that follows all steps brings a normalization to a missed plot.
+        follows = self.normalization.sees_starts or self.normalization.sees_misses
+        always = follows or not self.converter.sees_starts
 
         def schedule(
             innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
-        ) -> tuple[float, float, float, float, Memory]:
-            signals, own = normalize(innovation, change, dt, sigma, memory)
-            alpha, beta, gamma, retention = to_gains(infer(signals), dt)
+        ) -> tuple[Any, Any, Any, float, Memory]:
+            before = memory[:n_own]
+            time, variance, kept = expect(dt, sigma, memory[n_own:])
+            signals, own = normalize(innovation, change, dt, sigma, time, variance, before)
+            alpha, beta, gamma, retention, kept = convert(infer(signals), dt, sigma, kept)
             own = feedback(own, alpha, beta, gamma, dt, sigma)
-            return alpha, beta, gamma, retention, own
+            own = own if is_seen(sigma) | always else before
+            return alpha, beta, gamma, retention, (*own, *kept)
 
-        if not self.opens:
-            return schedule
+        return schedule
 
-        is_seen = _is_seen_on_all_axes if self.coupled else _is_seen
+    def _normalize(self, n_axes: int) -> Callable[..., tuple[tuple[float, ...], Memory]]:
+        """Kernel of the normalization, called with the numbers that it reads."""
+        normalize = self.normalization.kernel(n_axes)
+        if self.normalization.uses_expectation:
+
+            def expected(
+                innovation: Any, change: Any, dt: float, sigma: Any,
+                time: float, variance: Any, memory: Memory,
+            ) -> tuple[tuple[float, ...], Memory]:  # fmt: skip
+                return normalize(innovation, change, time, variance, memory)
+
+            return expected
+
+        def given(
+            innovation: Any, change: Any, dt: float, sigma: Any,
+            time: float, variance: Any, memory: Memory,
+        ) -> tuple[tuple[float, ...], Memory]:  # fmt: skip
+            return normalize(innovation, change, dt, sigma, memory)
+
+        return given
+
+    def _opening_kernel(self, n_axes: int) -> Kernel:
+        normalize = self.normalization.kernel(n_axes)
+        infer = self.inference
+        convert = self.converter.convert(n_axes, self.coupled)
+        feedback = self.normalization.feedback(n_axes) or _unchanged
+        is_seen = seen_by(self.coupled)
         every_step = self.normalization.sees_starts or self.normalization.sees_misses
 
         def open_and_schedule(
             innovation: Any, change: Any, dt: float, sigma: Any, memory: Memory
         ) -> tuple[float, float, float, float, Memory]:
             seen = is_seen(sigma)
-            count = memory[0] + 1.0 if seen else memory[0]
+            plots = memory[0] + 1.0 if seen else memory[0]
             before = memory[1:]
             signals, own = normalize(innovation, change, dt, sigma, before)
-            alpha, beta, gamma, retention = to_gains(infer(signals), dt)
-            first_alpha, first_beta = least_squares_gains(count if count > 2.0 else 2.0)
+            alpha, beta, gamma, retention, _ = convert(infer(signals), dt, sigma, ())
+            first_alpha, first_beta = least_squares_gains(plots if plots > 2.0 else 2.0)
             # α and β from the same source: those of different ones need not be stable together.
             opening = first_alpha > alpha
             alpha = first_alpha if opening else alpha
@@ -201,31 +290,9 @@ class FuzzyScheduler(GainScheduler):
             gamma = 0.0 if opening else gamma
             own = feedback(own, alpha, beta, gamma, dt, sigma)
             own = own if seen | every_step else before
-            return alpha, beta, gamma, retention, (count, *own)
+            return alpha, beta, gamma, retention, (plots, *own)
 
         return open_and_schedule
-
-
-def _at_time_step(
-    to_gains: Conversion, period: float | None
-) -> Callable[[tuple[float, ...], float], tuple[float, float, float, float]]:
-    """Conversion of outputs to the gains at a time step, if they belong to a period."""
-    if period is None:
-
-        def at_any(outputs: tuple[float, ...], dt: float) -> tuple[float, float, float, float]:
-            return to_gains(outputs)
-
-        return at_any
-
-    designed_at = period
-
-    def at_time_step(outputs: tuple[float, ...], dt: float) -> tuple[float, float, float, float]:
-        alpha, beta, gamma, retention = to_gains(outputs)
-        new_alpha, new_beta = pair_after(pair_rates(alpha, beta), dt / designed_at)
-        given = dt == designed_at
-        return alpha if given else new_alpha, beta if given else new_beta, gamma, retention
-
-    return at_time_step
 
 
 def _unchanged(
@@ -234,21 +301,18 @@ def _unchanged(
     return memory
 
 
-def _is_seen(sigma: float) -> bool:
-    return sigma != math.inf
-
-
-def _is_seen_on_all_axes(sigma: tuple[float, ...]) -> bool:
-    # A plot is seen on all axes or on none.
-    return sigma[0] != math.inf
-
-
 def _check_range(rules: RuleBase) -> None:
     """Gains that a rule base can reach must not be unstable.
 
-    Stiffness and damping only have to be nonnegative; α, β, γ are checked at the corners of the
-    box of their universes, which holds every inferred value.
+    Stiffness and damping only have to be nonnegative, noise and retention positive; α, β, γ are
+    checked at the corners of the box of their universes, which holds every inferred value.
     """
+    if "noise" in rules.output_names:
+        for name in rules.output_names:
+            least = rules.output(name).universe.low
+            if least <= 0:
+                raise RuleBaseError(f"{name} must be > 0; its universe starts at {least:g}")
+        return
     if "stiffness" in rules.output_names:
         for name in rules.output_names:
             least = rules.output(name).universe.low

@@ -1,4 +1,4 @@
-"""Which outputs of a rule base are gains of a tracker, and how they become α, β and γ.
+"""Which outputs of a rule base determine the gains of a tracker, and how they become α, β and γ.
 
 The scheduler, the certificate of stability, the review, the pictures and the command line use it.
 """
@@ -7,24 +7,78 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.wdomain import alpha_beta_from_w, bilinear, kalata_damping
+from fuzzytrack.schedulers.converter import Conversion, Converter, Memoryless
+from fuzzytrack.schedulers.maneuver_covariance import ManeuverCovariance
 
-__all__ = ["GAIN_SETTINGS", "Conversion", "GainOutputs", "choices", "find_gain_outputs", "gains_of"]
-
-#: From the outputs, in the order of the rule base, to (α, β, γ, retention of acceleration).
-Conversion = Callable[[tuple[float, ...]], tuple[float, float, float, float]]
+__all__ = [
+    "GAIN_SETTINGS", "ConvertedOutputs", "GainOutputs", "choices", "find_converted_outputs",
+    "find_gain_outputs", "gains_of", "numbers_of",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
-class GainOutputs(ABC):
-    """Outputs of a rule base that together determine the gains of a tracker.
+class ConvertedOutputs(ABC):
+    """Outputs of a rule base that a conversion turns into the gains of a tracker.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Names of the outputs.
+    setting : str
+        Name of the conversion in the scheduler setting ``gains``.
+    numbers : mapping of str to str
+        Numbers that it takes from the scheduler settings, and what each is.
+    parameters : tuple of str
+        Parameters of the scheduler that it takes.
+    has_covariance : bool
+        Whether it keeps a covariance, which says what variance an innovation should have.
+    uses_acceleration : bool
+        Whether γ can be other than 0.
+    """
+
+    setting: ClassVar[str]
+    numbers: ClassVar[Mapping[str, str]] = {}
+    parameters: ClassVar[tuple[str, ...]] = ()
+    has_covariance: ClassVar[bool] = False
+    names: tuple[str, ...]
+
+    @property
+    @abstractmethod
+    def uses_acceleration(self) -> bool:
+        """Whether γ can be other than 0."""
+
+    @abstractmethod
+    def converter(
+        self, output_names: Sequence[str], quiet: tuple[float, ...], **given: Any
+    ) -> Converter:
+        """What turns the outputs into gains in a scheduler's kernel.
+
+        Parameters
+        ----------
+        output_names : sequence of str
+            All outputs of the rule base, in the order in which their values come.
+        quiet : tuple of float
+            Their values where all inputs are 0.
+        **given
+            Those of `numbers` and `parameters` that the user gives.
+
+        Raises
+        ------
+        ValueError
+            If one of them is out of range.
+        """
+
+
+class GainOutputs(ConvertedOutputs):
+    """Outputs of a rule base that together are the gains of a tracker, whatever came before.
 
     Attributes
     ----------
@@ -34,13 +88,17 @@ class GainOutputs(ABC):
         Their name in the scheduler setting ``gains``.
     """
 
-    setting: ClassVar[str]
-    names: tuple[str, ...]
+    parameters = ("period",)
 
     @property
     def gain_names(self) -> tuple[str, ...]:
         """Names of the gains that follow: alpha, beta and maybe gamma."""
-        return ("alpha", "beta", "gamma") if "gamma" in self.names else ("alpha", "beta")
+        return ("alpha", "beta", "gamma") if self.uses_acceleration else ("alpha", "beta")
+
+    @property
+    def uses_acceleration(self) -> bool:
+        """Whether one of them is γ."""
+        return "gamma" in self.names
 
     def gains(self, outputs: Mapping[str, Array]) -> dict[str, Array]:
         """Gains from values of the outputs.
@@ -80,6 +138,12 @@ class GainOutputs(ABC):
         output_names : sequence of str
             All outputs of the rule base, in the order in which the function gets their values.
         """
+
+    def converter(
+        self, output_names: Sequence[str], quiet: tuple[float, ...], **given: Any
+    ) -> Converter:
+        """See `ConvertedOutputs.converter`."""
+        return Memoryless(self.conversion(output_names), **given)
 
 
 class _WDomain(GainOutputs):
@@ -146,12 +210,38 @@ class _Direct(GainOutputs):
         return direct_gamma
 
 
-_ALL: tuple[GainOutputs, ...] = (
+class _Covariance(ConvertedOutputs):
+    """Noise and retention of a maneuver, for a covariance from which the gains follow."""
+
+    setting = "covariance"
+    numbers: ClassVar[Mapping[str, str]] = {
+        "delay": "Time by which a maneuver is older than the plot before it is noticed, in τ₀.",
+        "gap": "Interval between plots at which the noise is halved, in τ₀.",
+        "start": "Standard deviation of the acceleration of a new track, in a₀.",
+    }
+    parameters = ("level", "velocity_sigma", "axes")
+    has_covariance = True
+
+    @property
+    def uses_acceleration(self) -> bool:
+        """Whether γ can be other than 0: yes."""
+        return True
+
+    def converter(
+        self, output_names: Sequence[str], quiet: tuple[float, ...], **given: Any
+    ) -> Converter:
+        """See `ConvertedOutputs.converter`."""
+        noise, retention = map(output_names.index, self.names)
+        return ManeuverCovariance((noise, retention), (quiet[noise], quiet[retention]), **given)
+
+
+_GAINS: tuple[GainOutputs, ...] = (
     _WDomain(("stiffness", "damping")),
     _Kalata(("stiffness",)),
     _Direct(("alpha", "beta")),
     _Direct(("alpha", "beta", "gamma")),
 )
+_ALL: tuple[ConvertedOutputs, ...] = (*_GAINS, _Covariance(("noise", "retention")))
 
 #: Words for the scheduler setting ``gains``.
 GAIN_SETTINGS = tuple(dict.fromkeys(outputs.setting for outputs in _ALL))
@@ -159,13 +249,25 @@ GAIN_SETTINGS = tuple(dict.fromkeys(outputs.setting for outputs in _ALL))
 
 def find_gain_outputs(output_names: Collection[str]) -> GainOutputs | None:
     """Outputs of a rule base that are gains; None if they are not gains."""
-    return next((found for found in _ALL if set(found.names) == set(output_names)), None)
+    return next((found for found in _GAINS if set(found.names) == set(output_names)), None)
+
+
+def find_converted_outputs(output_names: Collection[str], setting: str) -> ConvertedOutputs | None:
+    """Outputs of a rule base for a word of the setting ``gains``; None if they are others."""
+    fitting = (found for found in _ALL if found.setting == setting)
+    return next((found for found in fitting if set(found.names) == set(output_names)), None)
+
+
+def numbers_of(setting: str | None = None) -> dict[str, str]:
+    """Numbers that a word of the setting ``gains`` takes, or that all take, and what each is."""
+    found = [outputs for outputs in _ALL if setting in (None, outputs.setting)]
+    return {name: text for outputs in found for name, text in outputs.numbers.items()}
 
 
 def choices(setting: str | None = None) -> str:
-    """Outputs that are gains, for messages; of one setting, or all."""
-    allowed = (found.names for found in _ALL if setting in (None, found.setting))
-    return " or ".join(", ".join(names) for names in allowed)
+    """Outputs that a word of the setting ``gains`` needs, or that are gains, for messages."""
+    fitting = _GAINS if setting is None else [found for found in _ALL if found.setting == setting]
+    return " or ".join(", ".join(found.names) for found in fitting)
 
 
 def gains_of(outputs: Mapping[str, Array]) -> dict[str, Array]:

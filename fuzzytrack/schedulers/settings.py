@@ -19,9 +19,11 @@ from fuzzytrack.gains.period import poles_in_time
 from fuzzytrack.normalizations import Normalization, normalizations
 from fuzzytrack.schedulers.gain_outputs import (
     GAIN_SETTINGS,
+    ConvertedOutputs,
     GainOutputs,
     choices,
-    find_gain_outputs,
+    find_converted_outputs,
+    numbers_of,
 )
 from fuzzytrack.yamltree import is_number, suggestion
 
@@ -53,8 +55,10 @@ class SchedulerSettings:
     ----------
     normalization : Normalization
         Makes the inputs of the rule base.
-    outputs : GainOutputs
+    outputs : ConvertedOutputs
         Makes gains of its outputs.
+    numbers : dict of str to float
+        Numbers that this conversion takes.
     opens : bool
         Whether a new track has the gains of a growing memory first.
     period : float or None
@@ -62,7 +66,8 @@ class SchedulerSettings:
     """
 
     normalization: Normalization
-    outputs: GainOutputs
+    outputs: ConvertedOutputs
+    numbers: dict[str, float]
     opens: bool
     period: float | None
 
@@ -80,27 +85,73 @@ def read_settings(rules: RuleBase) -> SchedulerSettings:
     if "normalization" not in settings:
         _only_known_keys(settings)
         raise _missing(rules, "normalization")
-    normalization = _normalization(settings)
-    if "gains" not in settings:
+    gains = settings.get("gains")
+    if gains is not None and gains not in GAIN_SETTINGS:
+        raise _unknown("gains", gains, GAIN_SETTINGS)
+    own = numbers_of(gains)
+    words = {key: word for key, word in settings.items() if key not in KEYS}
+    normalization = _normalization(
+        settings["normalization"], {k: w for k, w in words.items() if k not in own}, tuple(own)
+    )
+    if gains is None:
         raise _missing(rules, "gains")
+    numbers = _numbers(f"gains {str(gains)!r}", {k: w for k, w in words.items() if k in own})
     _enough_signals(rules, normalization, settings["normalization"])
-    outputs = _outputs(rules, settings["gains"])
+    outputs = _outputs(rules, gains)
     opening = settings.get("opening")
     if opening is not None and opening not in OPENINGS:
         raise _unknown("opening", opening, OPENINGS)
     period = _period(rules, outputs, settings.get("period"))
-    return SchedulerSettings(normalization, outputs, opening is not None, period)
+    _go_together(settings, normalization, outputs)
+    _check_numbers(rules, outputs, numbers, words)
+    return SchedulerSettings(normalization, outputs, numbers, opening is not None, period)
+
+
+def _check_numbers(
+    rules: RuleBase, outputs: ConvertedOutputs, numbers: dict[str, float], words: dict[str, str]
+) -> None:
+    """Raise RuleBaseError if the conversion does not take its numbers."""
+    try:
+        outputs.converter(rules.output_names, (1.0,) * len(rules.outputs), **numbers)
+    except ValueError as error:
+        places = [_location(words[key]) for key in numbers if key in str(error)]
+        raise RuleBaseError(str(error), places[0] if places else None) from error
+
+
+def _go_together(
+    settings: dict[str, str], normalization: Normalization, outputs: ConvertedOutputs
+) -> None:
+    """Raise RuleBaseError for settings of which each is right, but not beside the others."""
+    name, gains = settings["normalization"], settings["gains"]
+    if normalization.uses_expectation and not outputs.has_covariance:
+        raise RuleBaseError(
+            f"normalization {str(name)!r} needs gains: covariance, got {str(gains)!r}",
+            _location(gains),
+        )
+    if not outputs.has_covariance:
+        return
+    if normalization.variance_start is not None:
+        raise RuleBaseError(
+            f"normalization {str(name)!r} has a covariance of its own; beside gains: "
+            f"{gains} use another one, such as surprise",
+            _location(name),
+        )
+    if "opening" in settings:
+        raise RuleBaseError(
+            f"opening: gains {str(gains)!r} open a track themselves; remove it",
+            _location(settings["opening"]),
+        )
 
 
 def check_period(
-    rules: RuleBase, outputs: GainOutputs, period: float, place: Location | None = None
+    rules: RuleBase, outputs: ConvertedOutputs, period: float, place: Location | None = None
 ) -> None:
     """Raise RuleBaseError unless the gains of a rule base can belong to a sampling time.
 
     Parameters
     ----------
     rules : RuleBase
-    outputs : GainOutputs
+    outputs : ConvertedOutputs
         Conversion of its outputs to gains.
     period : float
         Sampling time (s).
@@ -109,6 +160,12 @@ def check_period(
     """
     if not 0 < period < math.inf:
         raise RuleBaseError(f"period must be positive and finite (s), got {period:g}", place)
+    if not isinstance(outputs, GainOutputs):
+        raise RuleBaseError(
+            f"period: the gains of {rules.name} belong to no sampling time, since its covariance "
+            "follows the time; remove it",
+            place,
+        )
     if "gamma" in outputs.gain_names:
         raise RuleBaseError(
             f"period: {rules.name} gives gamma; only alpha and beta can be converted to another "
@@ -134,14 +191,21 @@ def _highest(output: Variable) -> float:
 
 def scheduler_schema() -> dict[str, Any]:
     """JSON Schema of the settings, for `fuzzytrack.fuzzy.schema.rulebase_schema`."""
+    words = {
+        key: {"description": text, "type": "string", "minLength": 1}
+        for key, text in _DESCRIPTIONS.items()
+    }
+    words_and_period = words | {
+        "period": {"description": _PERIOD, "type": "number", "exclusiveMinimum": 0}
+    }
+    described = {**_numbers_of_normalizations(), **numbers_of()}
+    numbers = {
+        key: {"description": text, "type": "number"} for key, text in sorted(described.items())
+    }
     return {
         "description": "How a gain scheduler uses the rule base.",
         "type": "object",
-        "properties": {
-            key: {"description": text, "type": "string", "minLength": 1}
-            for key, text in _DESCRIPTIONS.items()
-        }
-        | {"period": {"description": _PERIOD, "type": "number", "exclusiveMinimum": 0}},
+        "properties": words_and_period | numbers,
         "required": [],
         "additionalProperties": {
             "description": "A number that the normalization takes, by its name.",
@@ -150,6 +214,15 @@ def scheduler_schema() -> dict[str, Any]:
         "minProperties": 1,
         "if": {"not": {"required": ["normalization"]}},
         "then": {"propertyNames": {"enum": list(KEYS)}},
+    }
+
+
+def _numbers_of_normalizations() -> dict[str, str]:
+    """Numbers that normalizations of the package take, and what each is."""
+    return {
+        key: text
+        for name in normalizations.built_in()
+        for key, text in normalizations.get(name).numbers.items()
     }
 
 
@@ -182,29 +255,20 @@ def _only_known_keys(settings: dict[str, str]) -> None:
             )
 
 
-def _normalization(settings: dict[str, str]) -> Normalization:
+def _normalization(name: str, words: dict[str, str], others: tuple[str, ...]) -> Normalization:
     """Make the normalization with the numbers that stand beside its name."""
-    name = settings["normalization"]
     if name not in normalizations.names():
         raise _unknown("normalization", name, normalizations.names())
     factory = normalizations.get(name)
     parameters = inspect.signature(factory).parameters
-    numbers = {}
-    for key, word in settings.items():
-        if key in KEYS:
-            continue
+    for key in words:
         if key not in parameters:
             raise RuleBaseError(
                 f"unknown scheduler setting {str(key)!r} for normalization {str(name)!r}"
-                f"{suggestion(key, (*KEYS, *parameters))}",
+                f"{suggestion(key, (*KEYS, *parameters, *others))}",
                 _location(key),
             )
-        if not is_number(word):
-            raise RuleBaseError(
-                f"{key} of normalization {str(name)!r} must be a number, got {str(word)!r}",
-                _location(word),
-            )
-        numbers[str(key)] = float(word)
+    numbers = _numbers(f"normalization {str(name)!r}", words)
     missing = [key for key, p in parameters.items() if p.default is p.empty and key not in numbers]
     if missing:
         raise RuleBaseError(
@@ -214,12 +278,12 @@ def _normalization(settings: dict[str, str]) -> Normalization:
     try:
         made: Normalization = factory(**numbers)
     except ValueError as error:
-        places = [_location(settings[key]) for key in numbers if key in str(error)]
+        places = [_location(word) for key, word in words.items() if key in str(error)]
         raise RuleBaseError(str(error), places[0] if places else _location(name)) from error
     return made
 
 
-def _period(rules: RuleBase, outputs: GainOutputs, word: str | None) -> float | None:
+def _period(rules: RuleBase, outputs: ConvertedOutputs, word: str | None) -> float | None:
     if word is None:
         return None
     if not is_number(word):
@@ -229,6 +293,15 @@ def _period(rules: RuleBase, outputs: GainOutputs, word: str | None) -> float | 
     period = float(word)
     check_period(rules, outputs, period, _location(word))
     return period
+
+
+def _numbers(owner: str, words: dict[str, str]) -> dict[str, float]:
+    for key, word in words.items():
+        if not is_number(word):
+            raise RuleBaseError(
+                f"{key} of {owner} must be a number, got {str(word)!r}", _location(word)
+            )
+    return {str(key): float(word) for key, word in words.items()}
 
 
 def _enough_signals(rules: RuleBase, normalization: Normalization, name: str) -> None:
@@ -241,11 +314,9 @@ def _enough_signals(rules: RuleBase, normalization: Normalization, name: str) ->
         )
 
 
-def _outputs(rules: RuleBase, gains: str) -> GainOutputs:
-    if gains not in GAIN_SETTINGS:
-        raise _unknown("gains", gains, GAIN_SETTINGS)
-    outputs = find_gain_outputs(rules.output_names)
-    if outputs is None or outputs.setting != gains:
+def _outputs(rules: RuleBase, gains: str) -> ConvertedOutputs:
+    outputs = find_converted_outputs(rules.output_names, gains)
+    if outputs is None:
         raise RuleBaseError(
             f"gains {str(gains)!r} need outputs {choices(gains)}; {rules.name} has "
             f"{', '.join(rules.output_names)}",

@@ -22,6 +22,7 @@ from fuzzytrack.schedulers.catalog import (
     scheduling_rulebases,
     take_scheduler,
 )
+from fuzzytrack.schedulers.settings import read_settings
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.base import Tracker, trackers
 from fuzzytrack.trackers.lane_tracker import LaneTracker
@@ -65,9 +66,8 @@ class CatalogEntry:
 def catalog() -> tuple[CatalogEntry, ...]:
     """List everything that has a name: rule bases, schedulers, trackers, normalizations."""
     start = specs.spelled(_start_parameters())
-    fuzzy = (*specs.spelled(specs.parameters_of(FuzzyScheduler, without="rules")), *start)
     entries = [
-        CatalogEntry("rule base", rules.name, fuzzy, rules.source, "fuzzytrack")
+        CatalogEntry("rule base", rules.name, (*_used(rules), *start), rules.source, "fuzzytrack")
         for rules in map(load_rulebase, scheduling_rulebases())
     ]
     for plugin in schedulers:
@@ -276,6 +276,13 @@ def tracker_parameters(name: str) -> dict[str, inspect.Parameter]:
         return {**specs.parameters_of(schedulers.get(name)), **_start_parameters()}
     names = (*schedulers.names(), *trackers.names())
     raise ValueError(f"no such tracker{suggestion(name, names)}; or a rule base, by name or file")
+
+
+def _used(rules: RuleBase) -> tuple[str, ...]:
+    """Parameters of the fuzzy scheduler that a rule base uses, spelled."""
+    used = ("method", *read_settings(rules).outputs.parameters)
+    parameters = specs.parameters_of(FuzzyScheduler)
+    return specs.spelled({name: parameters[name] for name in used})
 
 
 def _start_parameters() -> dict[str, inspect.Parameter]:

@@ -43,6 +43,8 @@ def test_the_set_of_shipped_rule_bases():
     assert set(shipped_rulebases()) == {
         *FAMILY,
         "chan-style",
+        "maneuver",
+        "maneuver-two-rules",
         "omega-schedule",
         "tipper",
         "valve",

@@ -49,7 +49,7 @@ def test_an_acceleration_of_which_nothing_is_left_moves_nothing():
 
 @given(covariances(), TIMES, TIMES, st.floats(0.0, 1.0), st.floats(0.0, 10.0), TIMES)
 def test_noise_of_an_acceleration_that_began_before_the_plot(p, dt, delay, phi, q, gap):
-    b, g1, g2 = onset(dt, phi, delay, 1.0 / gap)
+    b, g1, g2 = onset(dt, phi, delay, dt / gap)
     assert b == pytest.approx((1 - phi**2) / (1 + dt / gap), rel=1e-12)
     g = np.array([(dt + delay) ** 2 / 2, dt + delay, 1.0])
     noise = np.array(add_onset(*p[UPPER], b * q, g1, g2)) - p[UPPER]
@@ -64,12 +64,17 @@ def test_correction_is_that_of_information(p, r):
     assert numbers == pytest.approx(after[UPPER], rel=1e-6, abs=1e-9 * np.abs(p).max())
 
 
+@given(covariances())
+def test_a_missing_plot_corrects_nothing(p):
+    assert correct_optimally(*p[UPPER], math.inf) == (0.0, 0.0, 0.0, tuple(p[UPPER]))
+
+
 def test_correction_after_a_long_gap_keeps_a_positive_covariance():
     p = 1.0, 0.1, 0.01, 0.2, 0.05, 0.1
     for dt, r in ((1e4, 1.0), (1e-3, 1e2), (1e4, 1e-2), (1e-3, 1e-2), (3.0, 1.0)):
         phi = fade(dt)
         p = predict_singer(*p, dt, phi)
-        b, g1, g2 = onset(dt, phi, 1.0, 1.0 / 0.6)
+        b, g1, g2 = onset(dt, phi, 1.0, dt / 0.6)
         p = correct_optimally(*add_onset(*p, 4.0 * b, g1, g2), r)[3]
         full = np.zeros((3, 3))
         full[UPPER] = p

@@ -55,6 +55,6 @@ def test_outputs_that_are_no_gains():
 
 
 def test_words_for_messages():
-    assert GAIN_SETTINGS == ("w-domain", "kalata", "direct")
+    assert GAIN_SETTINGS == ("w-domain", "kalata", "direct", "covariance")
     assert choices("direct") == "alpha, beta or alpha, beta, gamma"
     assert choices().startswith("stiffness, damping or stiffness or alpha")
