@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from fuzzytrack.gains.checks import nonnegative, number
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.reprs import constructor_code
@@ -14,6 +15,7 @@ from fuzzytrack.schedulers.catalog import as_scheduler
 from fuzzytrack.schedulers.form import check_answer, checked_kernel, checked_memory
 from fuzzytrack.trackers.alpha_beta_step import StepWay, steady_function, step_function
 from fuzzytrack.trackers.base import trackers
+from fuzzytrack.trackers.carried_covariance import CarriedCovariance
 from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 
 __all__ = ["STARTS", "AlphaBetaTracker"]
@@ -39,13 +41,19 @@ class AlphaBetaTracker(LaneTracker):
     missed : {"elapsed", "step"}
         What T is after missed plots: the time since the last plot, or since the last step, see
         `fuzzytrack.trackers.lane_tracker.LaneTracker`.
+    covariance : float, optional
+        Standard deviation σ_v of the target's acceleration from plot to plot (m/s²), >= 0; for a
+        scheduler with γ that of its change. Given, the covariance that the gains lead to goes along
+        with a track, whatever the scheduler, and `predict` returns its variances: for gates,
+        ellipses and the NIS. It needs the standard deviation of the plots and a two-point start.
 
     Raises
     ------
     TypeError
         If `scheduler` is neither.
     ValueError
-        If `start` or `missed` is unknown, or the text names no scheduler.
+        If `start` or `missed` is unknown, the text names no scheduler, or `covariance` is negative
+        or comes with a one-point start.
 
     Notes
     -----
@@ -69,16 +77,29 @@ class AlphaBetaTracker(LaneTracker):
     scheduler: GainScheduler
     start_mode: str = "two-point"
     missed: str = "elapsed"
+    covariance: float | None = None
 
     def __init__(
-        self, scheduler: GainScheduler | str, start: str = "two-point", missed: str = "elapsed"
+        self,
+        scheduler: GainScheduler | str,
+        start: str = "two-point",
+        missed: str = "elapsed",
+        covariance: float | None = None,
     ) -> None:
         if start not in STARTS:
             raise ValueError(f"start: unknown {start!r}; one of {', '.join(STARTS)}")
         check_missed(missed)
+        if covariance is not None:
+            covariance = number("covariance", nonnegative("covariance", covariance))
+            if start != "two-point":
+                raise ValueError(
+                    f"covariance: needs start 'two-point', got {start!r}: after one plot the "
+                    "variance of the velocity is not known"
+                )
         object.__setattr__(self, "scheduler", as_scheduler(scheduler))
         object.__setattr__(self, "start_mode", start)
         object.__setattr__(self, "missed", missed)
+        object.__setattr__(self, "covariance", covariance)
 
     def __repr__(self) -> str:
         return constructor_code(self, start_mode="start")
@@ -91,7 +112,7 @@ class AlphaBetaTracker(LaneTracker):
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
         """Whether plots need a standard deviation; from the scheduler."""
-        return self.scheduler.needs_sigma
+        return self._gains.needs_sigma
 
     @property
     def sees_misses(self) -> bool:  # type: ignore[override]
@@ -110,9 +131,10 @@ class AlphaBetaTracker(LaneTracker):
 
     def program(self, n_axes: int) -> LaneProgram:
         """The α-β-γ recursion with the scheduler's gains; see `LaneTracker.program`."""
-        scheduler = self.scheduler
-        checked_kernel(scheduler, n_axes)
-        memory = checked_memory(scheduler, n_axes)
+        checked_kernel(self.scheduler, n_axes)
+        checked_memory(self.scheduler, n_axes)
+        scheduler = self._gains
+        memory = scheduler.initial_memory(n_axes)
         if scheduler.uses_retention:
             memory = (*memory, math.inf)
         rows = Rows(n_axes, len(memory))
@@ -131,8 +153,16 @@ class AlphaBetaTracker(LaneTracker):
 
     def prediction_variance(self, memory: Any, dt: Any) -> Any:
         """Variance of a predicted position; see `LaneTracker.prediction_variance`."""
-        if self.scheduler.variance_start not in (None, self.start_mode):
+        scheduler = self._gains
+        if scheduler.variance_start not in (None, self.start_mode):
             # The scheduler's covariance is that of a track which started otherwise.
             return math.nan
-        own = memory[:-1] if self.scheduler.uses_retention else memory
-        return self.scheduler.prediction_variance(own, dt)
+        own = memory[:-1] if scheduler.uses_retention else memory
+        return scheduler.prediction_variance(own, dt)
+
+    @property
+    def _gains(self) -> GainScheduler:
+        """The scheduler, with a covariance if there is to be one."""
+        if self.covariance is None:
+            return self.scheduler
+        return CarriedCovariance(self.scheduler, self.covariance, self.missed == "elapsed")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import BLOCK, aligned
 from fuzzytrack.lanes.runner import Runner
-from fuzzytrack.trackers.state import TrackState
+from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = ["CompiledStep"]
 
@@ -85,7 +85,8 @@ class CompiledStep:
             room = (aligned(rows.total * BLOCK), np.empty(BLOCK, np.int64))
         # The states of a stream share their shape; reading that of an array takes longer.
         sizes = self._sizes
-        if sizes[0] is not shape:
+        if sizes[0] is not shape or len(lanes) != rows.kept:
+            check_rows(state, rows, "this tracker")
             sizes = self._sizes = (shape, lanes.shape)
         after = np.empty(sizes[1])
         plots = z if len(shape) == 1 else z.reshape(-1)

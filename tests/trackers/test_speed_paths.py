@@ -348,6 +348,17 @@ def test_a_compiled_tracker_pickles_and_stays_equal():
     np.testing.assert_array_equal(here.lanes, there.lanes)
 
 
+def test_a_state_with_fewer_rows_is_refused():
+    """As one that another release has pickled: loading it does not run the constructor's checks."""
+    FIXED.compile(2)
+    state = FIXED.step(FIXED.start([0.0, 0.0], 0.0), [1.0, 1.0], 1.0)
+    old = ft.TrackState.unchecked(state.time, (2,), state.lanes[:-1].copy(), state.rows)
+    with pytest.raises(ValueError, match="laid out for another tracker"):
+        FIXED.step(old, [2.0, 2.0], 2.0)
+    with pytest.raises(ValueError, match="laid out for another tracker"):
+        FIXED.run([2.0], [[2.0, 2.0]], state=old)
+
+
 def test_scratch_begins_with_a_line_of_the_cache():
     for count in (1, 100, 12345):
         numbers = aligned(count)
