@@ -136,7 +136,8 @@ def test_annotations_for_type_checkers_only(monkeypatch):
 def test_everything_listed_has_a_name_parameters_and_package():
     entries = {(e.kind, e.name): e for e in catalog()}
     assert entries["rule base", "stiffness-damping"].parameters == (
-        "method=exact", "period=None", "start=two-point", "missed=elapsed", "covariance=None")  # fmt: skip
+        "method=exact", "period=None", "start=two-point", "missed=elapsed", "covariance=None",
+    )  # fmt: skip
     assert entries["scheduler", "fixed"].parameters[:3] == ("alpha", "beta", "gamma=0.0")
     assert entries["scheduler", "fixed"].package == "fuzzytrack"
     assert "Llinas" in entries["tracker", "alpha-beta"].source
