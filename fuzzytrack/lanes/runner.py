@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -102,6 +103,7 @@ class Runner:
         native: bool | None = None,
         keep: Sequence[str] = OUTPUTS,
         threads: int | None = None,
+        into: Mapping[str, NDArray[Any]] | None = None,
     ) -> tuple[Array, dict[str, NDArray[Any]]]:
         """Run over time.
 
@@ -122,6 +124,10 @@ class Runner:
         threads : int, optional
             Threads that share the lanes of a compiled job; unless given one, or for a large job
             all processors.
+        into : mapping of str to ndarray, optional
+            Contiguous arrays of the dtype of the plots, by names of outputs. One that has the size
+            of its output is written into and returned in the output's shape; for other outputs
+            there are new arrays.
 
         Returns
         -------
@@ -141,9 +147,20 @@ class Runner:
             native = large or plots.dtype != np.float64
         self.work += plots.size
         after = self.fresh(plots.shape[1]) if lanes is None else np.array(lanes, order="C")
+        outputs = {name: self._output(name, plots, (into or {}).get(name)) for name in keep}
         if native:
-            return self._run_compiled(after, plots, times, sigmas, keep, threads)
-        return self._run_plain(after, plots, times, sigmas, keep)
+            self._run_compiled(after, plots, times, sigmas, outputs, threads)
+        else:
+            self._run_plain(after, plots, times, sigmas, outputs)
+        return after, outputs
+
+    def _output(self, name: str, plots: NDArray[Any], given: NDArray[Any] | None) -> NDArray[Any]:
+        """Array for an output: one that was given, if it has the size, or a new one."""
+        shape = plots.shape[:2] if name in GAINS else plots.shape
+        if given is not None and given.size == math.prod(shape):
+            # Compiled code would be compiled anew for a subclass of arrays.
+            return given.view(np.ndarray).reshape(shape)
+        return np.empty(shape, plots.dtype)
 
     def step(
         self, lanes: Array, plots: Array, times: list[float], sigmas: list[list[float]]
@@ -202,8 +219,8 @@ class Runner:
         return plain_step
 
     def _run_plain(
-        self, after: Array, plots: Array, times: Array, sigmas: Array, keep: Sequence[str] = OUTPUTS
-    ) -> tuple[Array, dict[str, Array]]:
+        self, after: Array, plots: Array, times: Array, sigmas: Array, outputs: dict[str, Array]
+    ) -> None:
         if np.isinf(plots).any():
             raise InfinitePlotError
         step, rows = self._plain_step, self.rows
@@ -223,12 +240,10 @@ class Runner:
             if history:
                 trace[:, lane] = history
                 after[:, lane] = b[:n_kept]
-        outputs = {}
-        for name in keep:
+        for name, output in outputs.items():
             column = rows.shown(name) - rows.predicted
             part = trace[:, :, column : column + rows.n_axes]
-            outputs[name] = trace[:, :, column].copy() if name in GAINS else part.copy()
-        return after, outputs
+            output[...] = trace[:, :, column] if name in GAINS else part
 
     def _run_compiled(
         self,
@@ -236,14 +251,12 @@ class Runner:
         plots: NDArray[Any],
         times: Array,
         sigmas: Array,
-        keep: Sequence[str] = OUTPUTS,
+        outputs: Mapping[str, NDArray[Any]],
         threads: int | None = None,
-    ) -> tuple[Array, dict[str, NDArray[Any]]]:
+    ) -> None:
         from fuzzytrack.lanes import block_loop
 
         (n_steps, count, _), dtype = plots.shape, plots.dtype.type
-        shapes = {name: plots.shape[:2] if name in GAINS else plots.shape for name in keep}
-        outputs = {name: np.empty(shape, dtype) for name, shape in shapes.items()}
         unwanted = np.empty(0, dtype)
         given = (
             _in_a_row(plots, dtype), _in_a_row(times, np.float64), _in_a_row(sigmas, dtype),
@@ -251,7 +264,7 @@ class Runner:
             after.reshape(-1),
             tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
         )  # fmt: skip
-        results = self._writes_results(keep)
+        results = self._writes_results(outputs)
         # A single step is never steady, so a stream of plots does not wait for its compilation.
         steady = [0, 0]
         if n_steps > 1:
@@ -271,7 +284,6 @@ class Runner:
         infinite = _in_parts(part, count, _threads(threads, plots.size))
         if infinite:
             raise InfinitePlotError
-        return after, outputs
 
     @property
     def places(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -283,7 +295,7 @@ class Runner:
         )  # fmt: skip
         return places, tuple((rows.shown if keeps else rows.output)(name) for name in OUTPUTS)
 
-    def _writes_results(self, keep: Sequence[str]) -> bool:
+    def _writes_results(self, keep: Iterable[str]) -> bool:
         """Whether the steady function has to write results into the buffer for some outputs."""
         in_state = () if self.program.keeps_state else ("filtered", "velocity", "acceleration")
         return bool({*keep} - {"predicted", *in_state})
@@ -314,7 +326,7 @@ class Runner:
         lanes, one = self.fresh(1), np.ones((1, 1, n_axes))
         for results in (True, False):
             self.steady_code(results, True)
-        self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], (), 1)
+        self._run_compiled(lanes, one, one[:, :, 0], one[:, :, :1], {}, 1)
         self.common_step = self._one_step(1.0)
         self.own_step = self._one_step(np.ones(1))
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, DTypeLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import Location, PluginError
 from fuzzytrack.kernels.shared_code import SharedCode
-from fuzzytrack.lanes.layout import BLOCK, GAINS, Rows
+from fuzzytrack.lanes.layout import BLOCK, Rows
 from fuzzytrack.lanes.plots import (
     PlotLayout,
     as_plots,
@@ -32,9 +32,10 @@ from fuzzytrack.lanes.runner import InfinitePlotError, Runner
 from fuzzytrack.lanes.start import CORRECT_RETURNS, CORRECT_TAKES, single_axis_step
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.trackers.compiled_step import CompiledStep
+from fuzzytrack.trackers.output_arrays import Out, OutputArrays
 from fuzzytrack.trackers.prediction import Prediction
-from fuzzytrack.trackers.result import TrackResult, checked_keep
-from fuzzytrack.trackers.state import Gains, TrackState, check_rows
+from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = [
     "MISSED", "LaneTracker", "announce", "check_missed", "learn_code", "runner", "sharing_code",
@@ -103,6 +104,7 @@ class LaneTracker(ABC):
         keep: Sequence[str] | None = None,
         threads: int | None = None,
         dtype: DTypeLike = np.float64,
+        out: Out | None = None,
     ) -> TrackResult:
         """Track plots over time.
 
@@ -118,8 +120,8 @@ class LaneTracker(ABC):
             State from which to continue; a new track unless given.
         keep : sequence of str, optional
             Outputs to keep in the result, from `fuzzytrack.trackers.result.KEPT`: predicted,
-            filtered, velocity, acceleration, innovation, gains. All of it unless given. Less is
-            faster, and takes less memory.
+            filtered, velocity, acceleration, innovation, gains. Unless given, what is in `out`, or
+            without `out` all of it. Less is faster, and takes less memory.
         threads : int, optional
             Threads that share the tracks of a large job; all processors unless given. The numbers
             do not depend on it.
@@ -127,6 +129,14 @@ class LaneTracker(ABC):
             np.float64, or np.float32 for half the memory and more speed: plots and results are
             then rounded to 7 digits, and so is every operation, so choose an origin near the plots.
             Such a run is always compiled.
+        out : mapping of str to ndarray, or TrackResult, optional
+            Arrays to write results into, by names of `keep` (for ``gains`` a
+            `fuzzytrack.trackers.state.Gains`), or a result whose arrays are used again and whose
+            numbers are lost. Each has the shape of `z` and the type `dtype`, is C-contiguous and
+            shares no memory with the arguments. The result holds these very arrays. What is kept
+            and not in `out` gets new arrays, as do gains in a result that all axes of its tracks
+            share. After an error in the run itself, such as an infinite plot, the arrays may have
+            been written to in part.
 
         Returns
         -------
@@ -136,12 +146,30 @@ class LaneTracker(ABC):
         ------
         DataError
             If a plot is infinite, or times are not finite and increasing; says where.
+        TypeError
+            If `out` holds anything but arrays.
         ValueError
-            If shapes do not fit, the scheduler needs `sigma`, a name in `keep` is unknown,
-            `threads` is less than 1, `dtype` is another, or the tracker works with numbers that
-            are too large or too small for it.
+            If shapes do not fit, the scheduler needs `sigma`, a name in `keep` or `out` is unknown,
+            `threads` is less than 1, `dtype` is another, an array of `out` cannot be used, or the
+            tracker works with numbers that are too large or too small for it.
+
+        Examples
+        --------
+        Results of batch after batch in the same memory:
+
+        >>> import numpy as np
+        >>> from fuzzytrack import AlphaBetaTracker
+        >>> tracker = AlphaBetaTracker("fixed:alpha=0.5:beta=0.2")
+        >>> filtered = np.empty(3)
+        >>> for plots in [0, 31, 60], [5, 7, 11]:
+        ...     result = tracker.run([0, 1, 2], plots, out={"filtered": filtered})
+        ...     print(filtered)
+        [ 0. 31. 61.]
+        [ 5.  7. 10.]
+        >>> result.filtered is filtered
+        True
         """
-        wanted = checked_keep(keep)
+        arrays = OutputArrays.of(out, keep)
         _check_threads(threads)
         before = _time_of(state)
         plots, times = as_plots(z, dtype), as_times(t, before)
@@ -153,6 +181,7 @@ class LaneTracker(ABC):
         if plots.dtype == np.float32:
             check_single_precision("t: a time step of", steps, times)
             check_single_precision("sigma:", deviation, plots)
+        arrays.check(plots, z=plots, t=times, sigma=deviation)
         sigmas = layout.to_lanes(deviation)
         try:
             after, raw = core(
@@ -160,21 +189,19 @@ class LaneTracker(ABC):
                 layout.to_lanes(plots),
                 layout.times_to_lanes(times),
                 sigmas,
-                keep=[part for name in wanted for part in (GAINS if name == "gains" else (name,))],
+                keep=arrays.parts,
                 threads=threads,
+                into=arrays.arrays,
             )
         except InfinitePlotError:
             raise infinite_plot(plots) from None
         except Exception as error:
             self._explain(error, layout.lane_axes)
             raise
-        outputs: dict[str, Any] = {name: layout.from_lanes(raw[name]) for name in raw}
-        if "gains" in wanted:
-            outputs["gains"] = Gains(*(outputs.pop(name) for name in GAINS))
         last = state
         if len(plots):
             last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
-        return TrackResult.of(times, plots, last, outputs)
+        return TrackResult.of(times, plots, last, arrays.results(raw, layout))
 
     def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
         """State of a new track, or batch of tracks, after a first plot.

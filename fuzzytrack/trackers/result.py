@@ -87,13 +87,26 @@ class TrackResult:
         return np.isnan(self.innovation) & ~np.isnan(self.predicted)
 
 
-def checked_keep(keep: Sequence[str] | None) -> tuple[str, ...]:
-    """Names of outputs to keep, in the order of `KEPT`; a single word is one of them."""
+def checked_keep(keep: Sequence[str] | None, argument: str = "keep") -> tuple[str, ...]:
+    """Names of outputs to keep, in the order of `KEPT`; a single word is one of them.
+
+    Parameters
+    ----------
+    keep : sequence of str or None
+        None is all of them.
+    argument : str
+        Name of the argument, for messages.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown.
+    """
     if keep is None:
         return KEPT
     # A word is a sequence of letters.
     names = (keep,) if isinstance(keep, str) else tuple(keep)
     for name in names:
         if name not in KEPT:
-            raise ValueError(f"keep: unknown {name!r}; out of {', '.join(KEPT)}")
+            raise ValueError(f"{argument}: unknown {name!r}; out of {', '.join(KEPT)}")
     return tuple(name for name in KEPT if name in names)
