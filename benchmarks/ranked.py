@@ -86,7 +86,7 @@ def tuned(conditions: Conditions) -> dict[str, str]:
 
 def with_level(conditions: Conditions) -> dict[str, str]:
     """Trackers that are told the strongest maneuver to expect, with their defaults else."""
-    names = ("imm-two", "imm-three")
+    names = ("maneuver", "maneuver-two-rules", "imm-two", "imm-three")
     return {name: f"{name}:level={conditions.level}" for name in names}
 
 

@@ -1,7 +1,7 @@
 """Which tracker is best? Every scheduler of the package on fresh random tracks.
 
     python -m benchmarks.ranking --tracks 3000 -o ranking.json
-    python -m benchmarks.ranking --tracks 3000 --variants "constant T" --trackers "IMM CV/CA,bank"
+    python -m benchmarks.ranking --tracks 3000 --variants "constant T" --trackers maneuver,imm-three
 
 The first column is the change of the geometric mean of the RMSE over the sets report, mixed and
 strong at constant T against fixed gains of 0.543 and 0.548, the others are the change against the
@@ -29,7 +29,7 @@ from fuzzytrack.yamltree import suggestion
 
 CONSTANT = "constant T"
 FIXED, KALMAN = "fixed .543 .548", "Kalman CV"
-AGAINST = ("imm-three", "IMM CV/CA")
+AGAINST = ("maneuver", "imm-three", "IMM CV/CA")
 # Rows of a table of paired differences: the best at constant T.
 _BEST = 10
 # Times as large an error as the reference from which on only that is shown.

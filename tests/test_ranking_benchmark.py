@@ -26,9 +26,7 @@ def test_every_tracker_of_the_package_is_ranked():
     specs = [Path(spec.partition(":")[0]).stem for spec in ranked(Conditions()).values()]
     known = {each.name for each in catalog() if each.kind != "normalization"}
     # Two are given by what they contain.
-    given = {"fuzzy", "alpha-beta"}
-    later = {"maneuver", "maneuver-two-rules"}
-    assert known - given - later <= set(specs)
+    assert known - {"fuzzy", "alpha-beta"} <= set(specs)
 
 
 def test_numbers_follow_the_conditions():
@@ -79,6 +77,36 @@ def test_figures_as_they_are_shown():
     table = [["", "a"], ["long", "+1"]]
     assert list(lines(table)) == ["       a", "long  +1"]
     assert markdown(table) == "|  | a |\n| --- | --: |\n| long | +1 |\n"
+
+
+def test_what_the_page_says_of_its_figures():
+    from benchmarks.ranking import FIXED, KALMAN, changes, described
+
+    text = (ROOT / "docs" / "ranking.json").read_text()
+    found = json.loads(text)
+    assert described(found) == (ROOT / "docs" / "ranking-tables.txt").read_text()
+    table = {name: changes(found, name) for name in (FIXED, KALMAN, "maneuver", "IMM CV/CA")}
+    constant = {name: each["constant T"][0] for name, each in table[FIXED].items()}
+    assert min(constant, key=constant.get) == "imm-three"
+    assert constant["maneuver"] <= -0.13
+    assert constant["maneuver-two-rules"] <= -0.12
+    assert constant["imm-three"] <= -0.138
+    # In every variant, weaving targets apart, by more than the error of the difference.
+    for rival in ("Kalman CV", "Kalman CA", "IMM CV/CV", "IMM CV/CA"):
+        for column, (value, error) in table["maneuver"][rival].items():
+            assert value > 2 * error or "weaving" in column, (rival, column)
+    behind = table["maneuver"]["imm-three"]
+    assert -0.015 < behind["constant T"][0] < -0.005
+    assert all(behind[column][0] > 0 for column in ("burst", "outliers", "told x.5"))
+    assert all(value > -0.035 for value, _ in behind.values())
+    for rival in ("imm-two", "imm-three", "IMM CV/CA"):
+        assert -0.02 < table["maneuver"][rival]["weaving, constant T"][0] < -0.005
+    assert abs(constant["stiffness-damping (tuned)"]) < 0.01
+    assert constant["stiffness-damping"] > 0.3
+    assert constant["omega-schedule"] < min(constant["Kalman CA"], constant["bank"])
+    alternating = "alternate 1:10"
+    assert table[KALMAN][FIXED][alternating][0] > 1000
+    assert table[KALMAN][f"{FIXED} + period"][alternating][0] < 0.15
 
 
 def test_unknown_names(capsys):
