@@ -110,7 +110,8 @@ class Tuned:
             return f"not worth it: held-out change against the start {self.rows[0].change_text}"
         found = f"worth it: held-out change against the start {self.rows[0].change_text}"
         as_good = [row.name for row in self.rows[1:-1] if not row.is_worse]
-        return f"{found}; but not better than {' or '.join(as_good)}" if as_good else found
+        others = " or ".join(f"the {name}" for name in as_good)
+        return f"{found}; but not better than {others}" if as_good else found
 
     @property
     def report(self) -> str:
