@@ -254,7 +254,8 @@ def _check_start(candidates: Candidates, run: Trials) -> None:
             f"sigma: {candidates.title} needs the standard deviation of the plots, which the data "
             "do not have"
         )
-    (sums,) = run.sums(candidates, [candidates.space.start])
+    # In plain Python: code for all that a search varies is compiled with the first numbers that do.
+    (sums,) = replace(run, compiled=False).sums(candidates, [candidates.space.start])
     if isinstance(run.criterion, Likelihood) and not np.isfinite(sums).all():
         raise ValueError(
             f"criterion: {candidates.title} does not keep the variance of its innovations, which "
