@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from textwrap import fill
 from typing import Annotated
 
 import typer
 
 from fuzzytrack import gains as theory
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import print_json, print_table, say, show
+from fuzzytrack.cli.covariance_certificate import print_covariance_certificate
+from fuzzytrack.cli.output import paragraph, print_json, print_table, say, show
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains.certificate import Certificate
+from fuzzytrack.gains.covariance_certificate import CovarianceCertificate
 from fuzzytrack.plurals import counted
 from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
 from fuzzytrack.schedulers.reachable_gains import sequence_steps
@@ -49,6 +50,14 @@ def certify(
             "since the last plot. [default: that of the rule base]",
         ),
     ] = None,
+    sigma_ratio: Annotated[
+        float,
+        typer.Option(
+            metavar="R",
+            help="For gains from a covariance: largest ratio between the standard deviations of a "
+            "plot and of the first one.",
+        ),
+    ] = 1.0,
     json: options.Json = False,
 ) -> None:
     """Prove that the error shrinks for any order of gains, or show an order that makes it grow.
@@ -58,7 +67,12 @@ def certify(
     """
     rules = load_rulebase(name)
     limits = None if steps is None else _limits(steps)
-    found = certify_gains(rules, reach=reach, steps=limits, missed=missed, period=period)
+    found = certify_gains(
+        rules, reach=reach, steps=limits, missed=missed, period=period, sigma_ratio=sigma_ratio
+    )
+    if isinstance(found, CovarianceCertificate):
+        print_covariance_certificate(name, rules, reach, found, json)
+        return
     sequence = sequence_steps(rules, found)
     if json:
         print_json(
@@ -80,22 +94,18 @@ def certify(
         )
         return
     say(f"{name}: {found.verdict}")
-    _paragraph(f"Covered: {_covered(found, limits)}.")
+    paragraph(f"Covered: {_covered(found, limits)}.")
     say()
     if found.verdict == "refuted":
         _print_sequence(rules, reach, found, sequence)
     elif found.verdict == "certified":
         _print_norm(rules, reach, found)
     else:
-        _paragraph(
+        paragraph(
             f"For gains {_reached(rules, reach)}, in any order, no measure of the error was found "
             f"that always shrinks (the best one may grow by a factor of {found.rate:.4f} a plot), "
             "nor a sequence of gains that makes the error grow."
         )
-
-
-def _paragraph(text: str) -> None:
-    say(fill(text, 80))
 
 
 def _limits(text: str) -> tuple[float, float]:
@@ -125,7 +135,7 @@ def _print_sequence(
 ) -> None:
     """Gains and times with which the error grows."""
     alone = all(theory.is_stable(step["alpha"], step["beta"]) for step in sequence)
-    _paragraph(
+    paragraph(
         f"Among gains {_reached(rules, reach)} are these. Repeated in this order they make the "
         f"error grow by a factor of {found.growth:.4f} a plot, though each by itself, at constant "
         f"T, is {'stable' if alone else 'stable, or on the edge of stability'}:"
@@ -151,7 +161,7 @@ def _print_sequence(
 
 def _print_norm(rules: RuleBase, reach: str, found: Certificate) -> None:
     """The norm that every plot reduces."""
-    _paragraph(
+    paragraph(
         f"For gains {_reached(rules, reach)}, in any order, the error shrinks at every plot to "
         f"{found.rate:.4f} of what it was, or less."
     )
@@ -162,13 +172,13 @@ def _print_norm(rules: RuleBase, reach: str, found: Certificate) -> None:
         "times the error of the velocity"
     )
     if len(found.polygon):
-        _paragraph(
+        paragraph(
             f"Its measure is 1 on a polygon of {len(found.polygon)} corners, which --json prints; "
             f"{error}."
         )
         return
     (_, x), (_, y) = found.lyapunov
-    _paragraph(f"Its measure is √(eᵀPe), where {error}, and")
+    paragraph(f"Its measure is √(eᵀPe), where {error}, and")
     say()
     say(f"  P = [{1:>9.4f} {x:>9.4f} ]")
     say(f"      [{x:>9.4f} {y:>9.4f} ]")

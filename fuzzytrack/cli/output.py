@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "output_folder",
+    "paragraph",
     "print_json",
     "print_table",
     "progress",
@@ -33,6 +35,11 @@ __all__ = [
 def say(text: str = "") -> None:
     """Print a line without wrapping it."""
     typer.echo(text)
+
+
+def paragraph(text: str) -> None:
+    """Print text in lines of at most 80 characters."""
+    say(fill(text, 80))
 
 
 def show(number: float, digits: int = 4) -> str:

@@ -46,6 +46,8 @@ class ElapsedTimes:
     missed: int = 0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "low", float(self.low))
+        object.__setattr__(self, "high", float(self.high))
         if not 0 < self.low <= self.high < math.inf:
             raise ValueError(
                 f"steps: must be two times with 0 < shortest <= longest, got {self.low:g} and "

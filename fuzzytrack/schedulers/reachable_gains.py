@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,24 +12,18 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.gains import certificate
-from fuzzytrack.gains.certificate import (
-    Certificate,
-    box,
-    polygon_in_gains,
-)
+from fuzzytrack.gains.certificate import Certificate, polygon_in_gains
+from fuzzytrack.gains.covariance_certificate import CovarianceCertificate, certify_covariance
 from fuzzytrack.gains.elapsed_times import ElapsedTimes
 from fuzzytrack.gains.polygons import convex_hull
 from fuzzytrack.gains.stability import poles
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
+from fuzzytrack.schedulers.reachable_covariance import covariance_limits
+from fuzzytrack.schedulers.reachable_outputs import output_values
 from fuzzytrack.schedulers.settings import check_period, read_settings
 
-__all__ = ["REACHES", "certify", "reachable_gains", "sequence_steps"]
-
-REACHES = ("universe", "rules")
-#: Values of each output of which counter-examples are made; the limits are two of them.
-_TRIED = 5
+__all__ = ["certify", "reachable_gains", "sequence_steps"]
 
 
 def certify(
@@ -40,8 +33,9 @@ def certify(
     steps: tuple[float, float] | None = None,
     missed: int = 0,
     period: float | None = None,
+    sigma_ratio: float = 1.0,
     max_length: int = 48,
-) -> Certificate:
+) -> Certificate | CovarianceCertificate:
     """Certify a set of gains, or all gains that a rule base can reach, under arbitrary switching.
 
     Without `steps` and `missed` it is about tracks with constant time between plots and no missed
@@ -56,18 +50,24 @@ def certify(
         For a rule base, see `reachable_gains`.
     steps : (float, float), optional
         Shortest and longest time between rows, s. It may change from row to row within these
-        limits, in any way. Without a period only their ratio matters.
+        limits, in any way. Without a period only their ratio matters. For gains from a covariance
+        in units of τ₀, and 1 unless given.
     missed : int
         Most plots that are missed in a row.
     period : float, optional
         Sampling time to which the gains belong, s; that of the rule base unless given. The gains
         are then converted to the time since the last plot, and constant T means this one.
+    sigma_ratio : float
+        For gains from a covariance the largest ratio, >= 1, of the standard deviation of a plot to
+        that of the first one, or the other way round. Other gains do not depend on it.
     max_length : int
         Longest sequence of gains tried as a counter-example.
 
     Returns
     -------
-    Certificate
+    Certificate or CovarianceCertificate
+        The latter for a rule base whose gains follow from a covariance; see
+        `fuzzytrack.gains.covariance_certificate`.
 
     Raises
     ------
@@ -91,6 +91,14 @@ def certify(
         around, reached = _pairs(gains), None
     else:
         rules = as_rulebase(gains, "gains")
+        times = ElapsedTimes(*(steps or (1.0, 1.0)), missed)
+        limits = covariance_limits(rules, reach, times, sigma_ratio)
+        if limits is not None and period is not None:
+            raise ValueError(
+                f"period: the covariance of {rules.name} follows the time; leave it out"
+            )
+        if limits is not None:
+            return certify_covariance(limits)
         around, reached = _gains(rules, reach)
         period = _period(rules, period)
     times = ElapsedTimes(*(steps or (period or 1.0, period or 1.0)), missed)
@@ -189,36 +197,26 @@ def _step(alpha: float, beta: float, w_domain: bool) -> dict[str, float]:
 
 def _gains(rules: RuleBase, reach: str) -> tuple[Array, Array]:
     """Gains that enclose those a rule base can reach, and gains that it does reach."""
-    if reach not in REACHES:
-        raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
     outputs = find_gain_outputs(rules.output_names)
     if outputs is None or "gamma" in outputs.names:
         raise RuleBaseError(
             f"{rules.name} cannot be certified: needed are outputs stiffness and damping, "
             f"stiffness alone, or alpha and beta; it has {', '.join(rules.output_names)}"
         )
-    values = [_values(rules.output(name)) for name in outputs.names]
-    if reach == "rules":
-        points = reached = _rule_conclusions(rules, outputs.names)
-    else:
-        # Where no rule fires each output is its default, which may lie outside of its universe.
-        points = np.array(list(product(*((min(v), max(v)) for v in values))))
-        reached = np.array(list(product(*values)))
+    points, reached = output_values(rules, outputs.names, reach)
+    if outputs.setting != "direct" and points.min() < 0:
+        raise RuleBaseError(
+            f"{rules.name} cannot be certified: {' and '.join(outputs.names)} must not be "
+            f"negative, and reach {points.min():g}"
+        )
     if outputs.setting == "w-domain":
-        corners = box(*((min(v), max(v)) for v in values)) if reach == "universe" else points
-        around = polygon_in_gains(convex_hull(corners))[0]
+        around = polygon_in_gains(convex_hull(points))[0]
     elif outputs.setting == "kalata":
         around = _around_kalata_curve(float(points.min()), float(points.max()))
     else:
         around = points
     to_gains = outputs.conversion(outputs.names)
     return around, np.array([to_gains(tuple(point))[:2] for point in reached.tolist()])
-
-
-def _values(output: Variable) -> tuple[float, ...]:
-    """Values of an output: a few in its universe, the limits among them, and its default."""
-    inside = tuple(np.linspace(output.universe.low, output.universe.high, _TRIED).tolist())
-    return inside if output.default is None else (*inside, output.default)
 
 
 def _around_kalata_curve(lowest: float, highest: float, pieces: int = 32) -> Array:
@@ -234,39 +232,3 @@ def _around_kalata_curve(lowest: float, highest: float, pieces: int = 32) -> Arr
     knots = np.stack([1 - r * r, 2 * (1 - r) ** 2], axis=1)
     between = np.stack([1 - r[1:] * r[:-1], 2 * (1 - r[1:]) * (1 - r[:-1])], axis=1)
     return np.concatenate([knots, between])
-
-
-def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
-    """What each rule concludes about the outputs, shape (n_rules, n_outputs)."""
-    operators = rules.operators
-    algebra = (operators.conjunction, operators.disjunction, operators.defuzzification)
-    if algebra != ("product", "sum", "weighted-centers"):
-        raise RuleBaseError(
-            "reach 'rules' needs product, sum and weighted-centers, where every output is a mean "
-            f"of what the rules conclude; {rules.name} has {', '.join(algebra)}: "
-            "use reach 'universe'"
-        )
-    rows = []
-    for rule in rules.rules:
-        totals, row = [], []
-        for name in names:
-            output = rules.output(name)
-            centers = dict(zip(output.set_names, output.centers().tolist(), strict=True))
-            shares = [
-                (c.confidence, centers[c.set_name]) for c in rule.consequents if c.output == name
-            ]
-            total = sum(share for share, _ in shares)
-            totals.append(total)
-            row.append(sum(share * center for share, center in shares) / total if total else 0.0)
-        if abs(totals[0] - totals[-1]) > 1e-12:
-            raise RuleBaseError(
-                f"reach 'rules' needs rules with the same confidence for {names[0]} and "
-                f"{names[-1]}, got: {rule}"
-            )
-        if totals[0] > 0:
-            rows.append(row)
-    # No rule fires: all outputs are their defaults.
-    defaults = [rules.output(name).default for name in names]
-    if None not in defaults:
-        rows.append([float(d) for d in defaults if d is not None])
-    return np.array(rows)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack import load_rulebase
+from fuzzytrack.fuzzy.loading import rulebase_path
 from fuzzytrack.gains import gain_card
 from fuzzytrack.gains.certificate import error_matrix
 from fuzzytrack.schedulers.reachable_gains import reachable_gains
@@ -310,3 +311,22 @@ def test_steps_of_direct_gains_have_no_stiffness(run, csv):
     found = as_json(run, "certify", csv(text, "edge.yaml"))
     assert found["verdict"] == "refuted"
     assert set(found["sequence"][0]) == {"alpha", "beta", "elapsed", "missed", "modulus"}
+
+
+def test_certified_by_a_theorem(run, csv):
+    words = "certify", "maneuver-two-rules", "--steps", ".5:2", "--missed", "1", "--sigma-ratio", 2
+    found = as_json(run, *words)
+    assert (found["verdict"], found["missing"]) == ("certified", "")
+    assert (found["noise"], found["retention"]) == ([0.12, 2], [1, 4])
+    assert (found["steps"], found["missed"], found["sigma_ratio"]) == ([0.5, 2], 1, 2)
+    assert found["contraction_is"] == "sampled"
+    text = run(*words).stdout
+    assert text.startswith("maneuver-two-rules: certified\nCovered: time between rows in [0.5, 2]")
+    assert "  time since the last plot in [0.5, 4] τ₀\n" in text
+    assert "  σ of a plot in [0.5, 2] σ of the first one\n" in text
+    assert f"{found['contraction']['20']:.3f} after 20 plots" in " ".join(text.split())
+    assert max(map(len, text.splitlines())) <= 80
+    rules = rulebase_path("maneuver-two-rules").read_text().replace("[0.12, 2, 41]", "[0, 2, 41]")
+    text = " ".join(run("certify", csv(rules, "zero.yaml")).stdout.split())
+    assert "The theorem does not apply: the noise must be above 0 and bounded" in text
+    assert "constant T = 1 τ₀, no missed plots." in text

@@ -43,7 +43,8 @@ def test_the_enclosure_is_tight():
 
 
 def test_times_tried_hold_the_ends():
-    assert ElapsedTimes(1, 4, 3).tried().tolist() == [1, 16]
+    times = ElapsedTimes(1, 4, 3).tried()
+    assert (times.dtype, times.tolist()) == (np.float64, [1, 16])
     assert ElapsedTimes(1, 1, 9).tried().tolist() == [1, 4, 7, 10]
 
 

@@ -122,3 +122,34 @@ def test_what_cannot_be_certified():
     uneven = replace(rules, rules=(unsure, *rules.rules[1:]))
     with pytest.raises(ft.RuleBaseError, match="same confidence for stiffness and damping"):
         certify(uneven, reach="rules")
+
+
+def test_negative_stiffness_is_refused():
+    rules = ft.load_rulebase("stiffness-damping")
+    changed = replace(rules, outputs=(replace(rules.outputs[0], default=-1.0), rules.outputs[1]))
+    with pytest.raises(ft.RuleBaseError, match="must not be negative, and reach -1"):
+        certify(changed)
+
+
+def test_limits_of_a_covariance():
+    rules = ft.load_rulebase("maneuver")
+    found = certify(rules, steps=(0.5, 2), missed=1, sigma_ratio=1.5)
+    limits = found.limits
+    assert found.verdict == "certified"
+    assert (limits.noise, limits.retention) == ((0.09, 2.7), (0.3, 7.0))
+    assert (limits.delay, limits.gap, limits.sigma_ratio) == (1.0, 0.6, 1.5)
+    assert limits.times.intervals == [(0.5, 4.0)]
+    assert sorted(found.contraction) == [10, 20, 40]
+    # Weighted centers: all values lie between those that the rules name.
+    assert certify(rules, reach="rules").limits.noise == (0.09, 2.7)
+    noise = replace(rules.outputs[0], default=0.0)
+    found = certify(replace(rules, outputs=(noise, *rules.outputs[1:])))
+    assert (found.verdict, found.limits.noise[0]) == ("not decided", 0)
+    assert found.missing.startswith("the noise must be above 0")
+    with pytest.raises(ValueError, match="period: the covariance of maneuver follows the time"):
+        certify(rules, period=3)
+
+
+def test_reachable_gains_are_not_those_of_a_covariance():
+    with pytest.raises(ft.RuleBaseError, match="maneuver cannot be certified: needed are outputs"):
+        reachable_gains("maneuver")

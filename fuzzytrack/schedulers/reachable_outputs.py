@@ -1,0 +1,96 @@
+"""Values that the outputs of a rule base can have."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.variable import Variable
+
+__all__ = ["REACHES", "output_values"]
+
+REACHES = ("universe", "rules")
+#: Values of each output of which counter-examples are made; the limits are two of them.
+_TRIED = 5
+
+
+def output_values(rules: RuleBase, names: tuple[str, ...], reach: str) -> tuple[Array, Array]:
+    """Values that enclose those some outputs of a rule base can have, and some that they do have.
+
+    Parameters
+    ----------
+    rules : RuleBase
+    names : tuple of str
+        The outputs.
+    reach : {"universe", "rules"}
+        ``universe``: anything in the universes of the outputs, and their defaults, which hold where
+        no rule fires. ``rules``: what the single rules conclude, and the defaults.
+
+    Returns
+    -------
+    around : ndarray, shape (n, k)
+        All values are in their convex hull; columns in the order of `names`.
+    reached : ndarray, shape (m, k)
+
+    Raises
+    ------
+    RuleBaseError
+        If ``rules`` is not valid for the algebra.
+    ValueError
+        If `reach` is unknown.
+    """
+    if reach not in REACHES:
+        raise ValueError(f"reach: unknown {reach!r}; one of {', '.join(REACHES)}")
+    if reach == "rules":
+        concluded = _rule_conclusions(rules, names)
+        return concluded, concluded
+    values = [_values(rules.output(name)) for name in names]
+    # A default may lie outside of its universe.
+    around = np.array(list(product(*((min(v), max(v)) for v in values))))
+    return around, np.array(list(product(*values)))
+
+
+def _values(output: Variable) -> tuple[float, ...]:
+    """Values of an output: a few in its universe, the limits among them, and its default."""
+    inside = tuple(np.linspace(output.universe.low, output.universe.high, _TRIED).tolist())
+    return inside if output.default is None else (*inside, output.default)
+
+
+def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
+    """What each rule concludes about the outputs, shape (n_rules, n_outputs)."""
+    operators = rules.operators
+    algebra = (operators.conjunction, operators.disjunction, operators.defuzzification)
+    if algebra != ("product", "sum", "weighted-centers"):
+        raise RuleBaseError(
+            "reach 'rules' needs product, sum and weighted-centers, where every output is a mean "
+            f"of what the rules conclude; {rules.name} has {', '.join(algebra)}: "
+            "use reach 'universe'"
+        )
+    rows = []
+    for rule in rules.rules:
+        totals, row = [], []
+        for name in names:
+            output = rules.output(name)
+            centers = dict(zip(output.set_names, output.centers().tolist(), strict=True))
+            shares = [
+                (c.confidence, centers[c.set_name]) for c in rule.consequents if c.output == name
+            ]
+            total = sum(share for share, _ in shares)
+            totals.append(total)
+            row.append(sum(share * center for share, center in shares) / total if total else 0.0)
+        if abs(totals[0] - totals[-1]) > 1e-12:
+            raise RuleBaseError(
+                f"reach 'rules' needs rules with the same confidence for {names[0]} and "
+                f"{names[-1]}, got: {rule}"
+            )
+        if totals[0] > 0:
+            rows.append(row)
+    # No rule fires: all outputs are their defaults.
+    defaults = [rules.output(name).default for name in names]
+    if None not in defaults:
+        rows.append([float(d) for d in defaults if d is not None])
+    return np.array(rows)
