@@ -11,6 +11,7 @@ Kalman filter of constant velocity, tuned once at constant T. Tables of paired d
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -191,7 +192,8 @@ def main(arguments: list[str] | None = None) -> int:
     if given.output:
         write_json(given.output, found, 1)
     if given.docs:
-        write_json(ROOT / "docs" / "ranking.json", found, 1)
+        text = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
+        (ROOT / "docs" / "ranking.json").write_text(f"{text}\n")
         (ROOT / "docs" / "ranking-tables.txt").write_text(described(found))
     return 0
 

@@ -7,9 +7,10 @@ Llinas et al. (1998); ``mixed``, straight legs and turns or accelerations of 0.1
 ``strong``, the same with 1 to 3 σ/T². Errors are those of the predicted position, in standard
 deviations σ of the noise.
 
-A tracker can only be judged when its numbers are tuned. These were tuned once for all three sets,
-on other tracks than those of this page, as for a radar whose targets are not known beforehand. The
-ranking of every tracker of the package, on many more tracks, is in :doc:`/ranking`.
+A tracker can only be judged when its numbers are tuned. Those that are written out here were tuned
+once for all three sets, on other tracks than those of this page, as for a radar whose targets are
+not known beforehand; ``maneuver`` and ``imm-three`` are told the strongest maneuver to expect,
+3 σ/T². The ranking of every tracker of the package, on many more tracks, is in :doc:`/ranking`.
 """
 
 # %%
@@ -25,9 +26,11 @@ trackers = {
     "omega-schedule": "omega-schedule",
     "Kalman CV": "kalman-cv:sigma_v=0.8697",
     "bank": "bank:lowest=0.3621:highest=0.9048:forget=0.6779",
+    "maneuver": "maneuver:level=3",
     "IMM CV/CA": (
         "imm:quiet_sigma=0.003112:maneuver_sigma=0.4009:quiet_stay=0.9319:maneuver_stay=0.8489"
     ),
+    "imm-three": "imm-three:level=3",
 }
 
 # %%
@@ -46,18 +49,18 @@ for name in trackers:
     cells = []
     for variant in chosen:
         change = ranking.change(name, "Kalman CV", variant)
-        far = change.value > 10
         text = f"{100 * change.value:+.1f} ± {100 * change.error:.1f} %"
-        cells.append(f"{'diverges' if far else text:>17}")
+        cells.append(f"{text if change.value < 3 else f'× {1 + change.value:.3g}':>17}")
     print(f"{name:21}" + "".join(cells))
 
 # %%
 # At a constant period rules on a smoothed innovation, ``omega-schedule``, are better than every
-# fixed gain and every Kalman filter, and the IMM is better still. With irregular time, or when half
-# of the plots are missed, a tracker must know the time since its last plot: dimensionless gains do
-# not, and may diverge.
+# fixed gain and every Kalman filter. With irregular time they are not: dimensionless gains do not
+# suit it, and may diverge. The rules of ``maneuver`` set the noise of a covariance instead, which
+# knows the time since the last plot. They are better than an IMM of two models; one of three models
+# is better still.
 shown = [name for name in trackers if name != "Kalman CV"]
-figure, axes = plt.subplots(2, 3, figsize=(9, 6), sharey=True, layout="constrained")
+figure, axes = plt.subplots(2, 3, figsize=(9, 6.5), sharey=True, layout="constrained")
 for ax, variant in zip(axes.flat, chosen, strict=True):
     changes = [ranking.change(name, "Kalman CV", variant) for name in shown]
     values = [min(100 * change.value, 60) for change in changes]
