@@ -8,7 +8,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 
-__all__ = ["MarkovChain", "Rates"]
+__all__ = ["MarkovChain"]
 
 #: Rate of each transition, by the state that is left and the one that is entered; 0 on the
 #: diagonal.
