@@ -168,3 +168,19 @@ def test_straight_tracks_as_a_table(tmp_path, capsys, monkeypatch):
     text = capsys.readouterr().out.splitlines()
     assert [line.split("  ")[0] for line in text[1:]] == ["Kalman CV", "fixed"]
     assert "100.0" in text[2]
+
+
+def test_plots_at_very_different_times(capsys, monkeypatch):
+    from benchmarks import stress
+
+    monkeypatch.setattr(stress, "TRACKS", 5)
+    monkeypatch.setattr(stress, "with_level", lambda conditions: {})
+    shares = []
+    worst, broken = stress.stressed(make_tracker("kalman-cv:sigma_v=0.87"), 40, 3, shares.append)
+    assert broken == 0
+    assert 1.5 < worst < 5.5
+    assert shares[-1] == 1.0
+    # Without a covariance there is no variance of a prediction.
+    assert stress.stressed(make_tracker("fixed:alpha=.5:beta=.2"), 4, 3, shares.append) == (0.0, 20)
+    assert stress.main(["--plots", "20"]) == 0
+    assert capsys.readouterr().out.startswith("Kalman CV ")
