@@ -280,3 +280,10 @@ def test_bad_arguments():
         box((0.0, 0.3), (0.5, 0.9))
     with pytest.raises(ValueError, match="damping must be 0 <= low <= high"):
         box((0.2, 0.3), (0.9, 0.5))
+
+
+def test_pairs_of_plots_in_quick_succession():
+    found = certify([[0.5, 0.2]], 2, times=ElapsedTimes(0.02, 0.98))
+    assert found.verdict == "refuted"
+    assert sorted(found.elapsed) == [0.02, 0.98]
+    assert found.growth**2 == pytest.approx(3.95, abs=0.01)
