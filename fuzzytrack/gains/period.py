@@ -27,7 +27,7 @@ from fuzzytrack.gains.checks import positive, stable_gains
 from fuzzytrack.gains.stability import factored, has_negative_pole
 from fuzzytrack.gains.wdomain import alpha_beta_from_s, s_from_alpha_beta
 
-__all__ = ["Rates", "pair_after", "pair_rates", "poles_in_time", "resampled_gains"]
+__all__ = ["pair_after", "pair_rates", "poles_in_time", "resampled_gains"]
 
 #: What `pair_rates` returns.
 Rates = tuple[float, float, bool]
