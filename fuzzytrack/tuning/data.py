@@ -75,7 +75,8 @@ class Batch:
 
     Attributes
     ----------
-    time : ndarray, shape (n_steps, n_tracks)
+    time : ndarray, shape (n_steps,) or (n_steps, n_tracks)
+        The times that all tracks have in common, for which less is compiled, or those of each.
     plots, target : ndarray, shape (n_steps, n_tracks, n_axes)
         `target` is what a prediction is compared with: the truth, or the plot.
     sigma : ndarray or None, shape (n_steps, n_tracks, n_axes)
@@ -183,7 +184,7 @@ class TuningData:
             sigma = np.where(np.isnan(sigma), 1.0, sigma)
         return tuple(
             Batch(
-                batch.times,
+                _common(batch.times),
                 plots[batch.places],
                 target[batch.places],
                 None if sigma is None else sigma[batch.places],
@@ -192,6 +193,11 @@ class TuningData:
             )
             for batch in batches([t.time for t in self.tracks])
         )
+
+
+def _common(times: Array) -> Array:
+    """Times of one track, if all have the same."""
+    return times[:, 0] if (times == times[:, :1]).all() else times
 
 
 def joined(parts: Sequence[TuningData]) -> TuningData:

@@ -33,6 +33,7 @@ def test_units_are_tracks_or_blocks_of_time():
     assert (folds.kind, folds.number) == ("tracks", 4)
     assert sorted(folds.fold) == [0, 1, 2, 3]
     np.testing.assert_array_equal(folds.plots, [58, 78, 73, 28])
+    assert all(batch.time.ndim == 2 or len(batch.members) == 1 for batch in data.batches)
     # Sums over the plots of each track, whatever the batches.
     values = [np.where(b.scored, b.members + 1.0, np.nan) for b in data.batches]
     np.testing.assert_array_equal(folds.by_unit(values), folds.plots * [1, 2, 3, 4])
@@ -83,6 +84,8 @@ def test_runs_of_a_scenario_have_their_truth_and_sigma():
     assert data.has_sigma
     scaled = np.concatenate([(t.plots - t.truth) / t.sigma for t in data.tracks])
     assert np.nanmean(scaled**2) == pytest.approx(1, rel=0.2)
+    # Times that all have in common are not repeated.
+    assert [batch.time.shape for batch in data.batches] == [data.tracks[0].time.shape]
     assert "TuningData" in repr(data)
 
 
