@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from itertools import islice
+from multiprocessing import parent_process
 from typing import TypeVar
 
 __all__ = ["Progress", "part", "run_tasks"]
@@ -57,34 +59,48 @@ def run_tasks(
     Notes
     -----
     Tasks that have not begun are canceled when the iteration ends early, by an error, an interrupt
-    or because the generator is closed.
+    or because the generator is closed. Warnings of other processes are issued in this one.
     """
     if executor is None:
         for task in tasks:
             yield task, function(task)
         return
     waiting = iter(tasks)
-    running: dict[Future[Outcome], Task] = {}
+    running: dict[Future[tuple[Outcome, list[Warning]]], Task] = {}
     failures: Counter[Task] = Counter()
     try:
         while True:
             for task in islice(waiting, _AHEAD - len(running)):
-                running[executor.submit(function, task)] = task
+                running[executor.submit(_with_warnings, function, task)] = task
             if not running:
                 return
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 task = running.pop(future)
                 try:
-                    outcome = future.result()
+                    outcome, caught = future.result()
                 except (BrokenExecutor, ValueError):
                     raise
                 except Exception:
                     failures[task] += 1
                     if failures[task] == _TRIES:
                         raise
-                    running[executor.submit(function, task)] = task
+                    running[executor.submit(_with_warnings, function, task)] = task
                 else:
+                    for warning in caught:
+                        warnings.warn(warning, stacklevel=2)
                     yield task, outcome
     finally:
         for future in running:
             future.cancel()
+
+
+def _with_warnings(
+    function: Callable[[Task], Outcome], task: Task
+) -> tuple[Outcome, list[Warning]]:
+    """What a function returns for a task, and the warnings that it issues in another process."""
+    if parent_process() is None:
+        return function(task), []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        outcome = function(task)
+    return outcome, [w.message for w in caught if isinstance(w.message, Warning)]

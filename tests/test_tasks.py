@@ -1,5 +1,6 @@
 """Tasks in this process and on executors that finish, fail and break in every order."""
 
+import warnings
 from concurrent.futures import BrokenExecutor, Executor, Future
 
 import pytest
@@ -29,11 +30,12 @@ class Scripted(Executor):
 
         monkeypatch.setattr(tasks, "wait", working_wait)
 
-    def submit(self, function, /, task):
+    def submit(self, function, /, *given):
+        task = given[-1]
         self.given.append(task)
         future = Future()
         future.add_done_callback(lambda f: f.cancelled() and self.canceled.append(task))
-        self.waiting.append((future, function, task))
+        self.waiting.append((future, lambda task: function(*given), task))
         self.most = max(self.most, len(self.waiting))
         return future
 
@@ -101,6 +103,19 @@ def test_what_has_not_begun_is_canceled_when_nobody_wants_it(monkeypatch):
     assert next(outcomes) == (3, 9)
     outcomes.close()
     assert sorted(executor.canceled) == [1, 2]
+
+
+def test_warnings_of_other_processes_are_issued_in_this_one(monkeypatch):
+    def warn(task):
+        warnings.warn(f"{task % 2}", UserWarning, stacklevel=1)
+        return task
+
+    monkeypatch.setattr(tasks, "parent_process", lambda: "another process")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        outcomes = dict(run_tasks(warn, range(4), Scripted(monkeypatch)))
+    assert outcomes == {task: task for task in range(4)}
+    assert {str(w.message) for w in caught} == {"0", "1"}
 
 
 def test_a_part_of_the_work_reports_its_share():
