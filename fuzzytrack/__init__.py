@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         NoRuleFiresWarning,
         PluginWarning,
         RuleBaseError,
+        TrackWarning,
     )
     from fuzzytrack.fuzzy.fuzzification import Fuzzification
     from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, shipped_rulebases
@@ -50,6 +51,7 @@ __all__ = [
     "RuleBaseError",
     "TrackResult",
     "TrackState",
+    "TrackWarning",
     "Tracker",
     "__version__",
     "alpha_beta_from_w",
@@ -67,7 +69,14 @@ __all__ = [
 ]
 
 _HOMES = {
-    "errors": ("CacheWarning", "DataError", "NoRuleFiresWarning", "PluginWarning", "RuleBaseError"),
+    "errors": (
+        "CacheWarning",
+        "DataError",
+        "NoRuleFiresWarning",
+        "PluginWarning",
+        "RuleBaseError",
+        "TrackWarning",
+    ),
     "fuzzy.fuzzification": ("Fuzzification",),
     "fuzzy.loading": ("load_rulebase", "loads_rulebase", "shipped_rulebases"),
     "fuzzy.rulebase": ("RuleBase",),

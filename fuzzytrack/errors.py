@@ -16,6 +16,7 @@ __all__ = [
     "PluginWarning",
     "RuleBaseError",
     "ScenarioError",
+    "TrackWarning",
     "Word",
     "in_one_sentence",
 ]
@@ -101,6 +102,10 @@ class NoRuleFiresWarning(UserWarning):
 
 class PluginWarning(UserWarning):
     """A plug-in was skipped: it could not be loaded, or its name is taken."""
+
+
+class TrackWarning(UserWarning):
+    """The gains of a run do not suit the times of its plots: they make tracks mostly noise."""
 
 
 class CacheWarning(UserWarning):

@@ -101,6 +101,7 @@ def test_compiled_code_can_be_kept_on_disk(name):
     assert None not in map(fingerprint, functions)
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @pytest.mark.parametrize("name", [*SCHEDULERS, *TRACKERS])
 def test_missed_plots_swing_no_track_up(name):
     """A coasted turn goes wrong by 100 m/s, and a start from noise as much; nothing may add up."""

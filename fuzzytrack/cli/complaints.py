@@ -16,6 +16,7 @@ from fuzzytrack.errors import (
     FileError,
     NoRuleFiresWarning,
     PluginWarning,
+    TrackWarning,
     in_one_sentence,
 )
 from fuzzytrack.plugins.scripts import loaded_scripts, place_in_script
@@ -49,8 +50,9 @@ class Commands(TyperGroup):
         extra["standalone_mode"] = False
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
-            for category in (CacheWarning, NoRuleFiresWarning, PluginWarning):
-                warnings.simplefilter("always", category)
+            # Each line once in a command, which may run a tracker many times.
+            for category in (CacheWarning, NoRuleFiresWarning, PluginWarning, TrackWarning):
+                warnings.simplefilter("default", category)
             try:
                 status = super().main(*args, **extra)
             except Exception as error:

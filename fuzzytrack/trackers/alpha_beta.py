@@ -125,6 +125,11 @@ class AlphaBetaTracker(LaneTracker):
         return self.scheduler.sigma_w
 
     @property
+    def one_recursion(self) -> bool:  # type: ignore[override]
+        """Whether all that a track becomes follows from its gains: without a retention time."""
+        return not self.scheduler.uses_retention
+
+    @property
     def name(self) -> str:
         """Name for messages: that of the scheduler."""
         return type(self.scheduler).__name__

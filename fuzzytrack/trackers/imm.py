@@ -113,6 +113,7 @@ class InteractingPair(LaneTracker):
     """
 
     source: ClassVar[str] = "Bar-Shalom, Li & Kirubarajan (2001), section 11.6.6"
+    one_recursion = False  # its gains are means over the models
 
     quiet_sigma: float
     maneuver_sigma: float

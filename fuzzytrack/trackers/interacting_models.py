@@ -99,6 +99,7 @@ class InteractingModels(LaneTracker):
 
     source: ClassVar[str] = "Blom & Bar-Shalom (1988), with Singer (1970)"
     coupled = True
+    one_recursion = False  # its gains are means over the models
 
     models: tuple[MotionModel, ...]
     rates: Rates

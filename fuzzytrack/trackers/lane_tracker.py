@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 import traceback
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.errors import Location, PluginError
+from fuzzytrack.errors import Location, PluginError, TrackWarning
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.lanes.layout import BLOCK, Rows
 from fuzzytrack.lanes.plots import (
@@ -36,6 +37,7 @@ from fuzzytrack.trackers.output_arrays import Out, OutputArrays
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import TrackState, check_rows
+from fuzzytrack.trackers.time_check import WRONG_GAINS, TrackTimes
 
 __all__ = [
     "MISSED", "LaneTracker", "announce", "check_missed", "learn_code", "runner", "sharing_code",
@@ -68,6 +70,9 @@ class LaneTracker(ABC):
         the track. A missed plot does not change the track: it is predicted over the whole gap, as
         if there had been no steps between. ``step``: the time since the last step, at which the
         track may have coasted; so it is in the papers.
+    one_recursion : bool
+        Whether a track is one α-β-γ recursion with the gains of the result, as it is without a
+        retention time. Then `run` can see that they do not suit the times of the plots, and warns.
     """
 
     coupled: bool = False
@@ -75,6 +80,7 @@ class LaneTracker(ABC):
     sees_misses: bool = False
     sigma_w: float | None = None
     missed: str = "elapsed"
+    one_recursion: bool = True
 
     def __repr__(self) -> str:
         return constructor_code(self)
@@ -153,6 +159,12 @@ class LaneTracker(ABC):
             `threads` is less than 1, `dtype` is another, an array of `out` cannot be used, or the
             tracker works with numbers that are too large or too small for it.
 
+        Warns
+        -----
+        TrackWarning
+            If the times between plots differ so much that the gains make the noise of the plots
+            more than ten times larger. It is looked for if gains are kept, in up to 200 tracks.
+
         Examples
         --------
         Results of batch after batch in the same memory:
@@ -201,7 +213,12 @@ class LaneTracker(ABC):
         last = state
         if len(plots):
             last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
-        return TrackResult.of(times, plots, last, arrays.results(raw, layout))
+        result = TrackResult.of(times, plots, last, arrays.results(raw, layout))
+        if self.one_recursion and "gains" in result.kept:
+            between = TrackTimes.of(times, plots, self.coupled, self.missed)
+            if between is not None and between.are_wrong_for(result.gains):
+                warnings.warn(f"{self!r}: {WRONG_GAINS}", TrackWarning, stacklevel=2)
+        return result
 
     def start(self, z: ArrayLike, t: ArrayLike, sigma: ArrayLike | None = None) -> TrackState:
         """State of a new track, or batch of tracks, after a first plot.

@@ -11,6 +11,9 @@ from fuzzytrack.io.recording import find_columns
 from fuzzytrack.recordings import partitions as partitions_module
 from fuzzytrack.recordings.partitions import track_partitions
 
+# Times at random lie much closer together than fixed gains allow.
+pytestmark = pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
+
 TRACKER = AlphaBetaTracker(FixedGains(0.5, 0.2))
 
 

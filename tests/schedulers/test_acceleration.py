@@ -39,6 +39,7 @@ def recording():
     return np.cumsum(random.uniform(0.2, 2.0, 40)), plots
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @pytest.mark.parametrize("start", ["two-point", "one-point"])
 @pytest.mark.parametrize("compile_above", [0, 10**9])
 def test_to_leave_it_out_changes_no_number(monkeypatch, start, compile_above):
@@ -196,6 +197,7 @@ def test_axes_together_have_one_retention(missed):
         assert_faded(result, times, plots[:, track], (0.6, 0.4, 0.3), missed)
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 def test_without_retention_the_number_is_not_used():
     times, plots = recording()
     unused = AlphaBetaTracker(Fading(uses_retention=False)).run(times, plots)

@@ -176,6 +176,7 @@ def check_random_rule_bases(count, seed=11):
     return {verdict: verdicts.count(verdict) for verdict in sorted(set(verdicts))}
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @pytest.mark.untraced
 def test_verdicts_on_random_rule_bases():
     verdicts = check_random_rule_bases(24)

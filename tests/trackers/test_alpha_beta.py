@@ -1,4 +1,5 @@
 import pickle
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -56,6 +57,7 @@ def literal_tracker(times, plots, alpha, beta, gamma=0.0):
     return np.array(predicted)
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @given(
     st.lists(st.tuples(st.floats(0.1, 5), st.floats(-1e3, 1e3)), min_size=3, max_size=30),
     st.sampled_from([(0.5, 0.2, 0.0), (0.9, 1.1, 0.4), (1.2, 0.7, 0.0)]),
@@ -156,7 +158,8 @@ def test_how_long_gaps_may_be(gains, gap, stable):
 def test_how_different_time_steps_may_be(gains, ratio, stable):
     times = np.cumsum(np.tile([1.0, ratio], 600))
     plots = np.random.default_rng(1).normal(size=len(times))
-    found = ft.AlphaBetaTracker(ft.FixedGains(*gains)).run(times, plots)
+    with nullcontext() if stable else pytest.warns(ft.TrackWarning):
+        found = ft.AlphaBetaTracker(ft.FixedGains(*gains)).run(times, plots)
     assert (np.abs(found.filtered[-2:]).max() < 1e4) == stable
 
 

@@ -90,6 +90,7 @@ def literal_bank(times, plots, sigma, alphas, selection, forget, missed):
     return np.array(history).T
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @settings(max_examples=40)
 @given(
     seed=st.integers(0, 2**32 - 1),

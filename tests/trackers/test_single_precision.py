@@ -69,6 +69,7 @@ def single(tracker, times, plots, **settings):
     return tracker.run(times, plots, SIGMA, dtype=np.float32, **settings)
 
 
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @pytest.mark.parametrize("name", TRACKERS)
 def test_it_is_near_to_double_precision(name):
     times, plots = recording()
