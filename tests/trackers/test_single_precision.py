@@ -16,6 +16,9 @@ from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
 
+# Some gains do not suit the times of these plots.
+pytestmark = pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
+
 pytestmark = pytest.mark.untraced
 
 SINGLE = np.dtype(np.float32)
@@ -69,7 +72,6 @@ def single(tracker, times, plots, **settings):
     return tracker.run(times, plots, SIGMA, dtype=np.float32, **settings)
 
 
-@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @pytest.mark.parametrize("name", TRACKERS)
 def test_it_is_near_to_double_precision(name):
     times, plots = recording()
