@@ -16,10 +16,11 @@ from fuzzytrack.trackers.covariance import track_covariance
 from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
 
-# Some gains do not suit the times of these plots.
-pytestmark = pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
-
-pytestmark = pytest.mark.untraced
+pytestmark = [
+    pytest.mark.untraced,
+    # Some gains do not suit the times of these plots.
+    pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning"),
+]
 
 SINGLE = np.dtype(np.float32)
 SIGMA = 10.0
