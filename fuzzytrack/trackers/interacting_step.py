@@ -27,9 +27,6 @@ _LEAST = 1e-7
 def step_function(numbers: ModelSet, places: ModelRows, stride: int) -> Callable[[Any, int], None]:
     """Function that does one time step of the first lanes of a buffer, in place.
 
-    It goes through the lanes several times: the compiler works on neighboring lanes at once if
-    what is done to each of them is not too much.
-
     Parameters
     ----------
     numbers : ModelSet
@@ -37,8 +34,6 @@ def step_function(numbers: ModelSet, places: ModelRows, stride: int) -> Callable
     stride : int
         Numbers between rows.
     """
-    moved = [_begin(numbers, places, stride), mover(numbers, places, stride, _bounded)]
-    judged = [_measure(numbers, places, stride), _judge(numbers, places, stride)]
     correct = _corrected(places, stride)
 
     def corrected(j: int) -> Part:
@@ -49,21 +44,22 @@ def step_function(numbers: ModelSet, places: ModelRows, stride: int) -> Callable
         q = (numbers.start_acceleration if accelerates else numbers.models[j].noise) ** 2
         return lambda b, i: correct(b, i, model, moved, p_row, gain_row, q, accelerates)
 
-    return in_turn([
-        _through_lanes(in_turn(moved), stride),
-        _through_lanes(in_turn(judged), stride),
-        *(_through_lanes(corrected(j), stride) for j in range(places.n_models)),
-        _through_lanes(_end(places, stride), stride),
+    advance = in_turn([
+        _begin(numbers, places, stride),
+        mover(numbers, places, stride, _bounded),
+        _measure(numbers, places, stride),
+        _judge(numbers, places, stride),
+        *map(corrected, range(places.n_models)),
+        _end(places, stride),
     ])  # fmt: skip
 
-
-def _through_lanes(part: Part, stride: int) -> Callable[[Any, int], None]:
-    def through(b: Any, count: int) -> None:
+    def step(b: Any, count: int) -> None:
         use_wide_vectors()
+        # The compiler sees that no row runs into the next, and works on several lanes at once.
         for i in range(min(count, stride)):
-            part(b, i)
+            advance(b, i)
 
-    return through
+    return step
 
 
 def _bounded(value: float) -> float:
@@ -113,7 +109,8 @@ def _measure(numbers: ModelSet, places: ModelRows, stride: int) -> Part:
         gap, rate = b[gap_row * stride + i], b[rate_row * stride + i]
         seen = z == z
         new = seen & (plots == 0.0)
-        first = b[variance_row * stride + i] if new else b[first_row * stride + i]
+        r, first = b[variance_row * stride + i], b[first_row * stride + i]
+        first = r if new else first
         b[first_row * stride + i] = first
         if declared:
             b[rate_row * stride + i] = math.sqrt(level / math.sqrt(first)) if new else rate
@@ -174,8 +171,8 @@ def _judge(numbers: ModelSet, places: ModelRows, stride: int) -> Part:
         update = seen & running
         scale = 1.0 / (total if total > 0.0 else 1.0)
         for j in range(n):
-            before = b[(c_row + j) * stride + i]
-            before = before if running else b[(p_row + j) * stride + i]
+            chance, before = b[(c_row + j) * stride + i], b[(p_row + j) * stride + i]
+            before = chance if running else before
             after = (own[2 * n + j] * scale + least) * all_least
             b[(p_row + j) * stride + i] = after if update else before
 
@@ -257,10 +254,10 @@ def _corrected(
             m = k * stride + i
             x, v = b[moved_row * stride + m], b[(moved_row + n_axes) * stride + m]
             a = b[(moved_row + 2 * n_axes) * stride + m]
-            e, slope, old = z - x, (z - last) * pace, b[model_row * stride + m]
+            e, slope = z - x, (z - last) * pace
             e = e if seen else 0.0
             x, v, a = x + k1 * e, v + k2 * e, a + k3 * e
-            first_x, first_v = z if seen else old, slope if second else 0.0
+            first_x, first_v = z if seen else last, slope if second else 0.0
             b[model_row * stride + m] = x if running else first_x
             b[(model_row + n_axes) * stride + m] = v if running else first_v
             b[(model_row + 2 * n_axes) * stride + m] = a if running else 0.0
