@@ -10,7 +10,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import nonnegative, number, positive
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.interacting_step import step_function
-from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 from fuzzytrack.trackers.markov_chain import MarkovChain, Rates
 from fuzzytrack.trackers.model_mixing import predicted_variance
 from fuzzytrack.trackers.model_set import UNITS, ModelRows, ModelSet, MotionModel
@@ -112,6 +112,7 @@ class InteractingModels(LaneTracker):
     missed: str = "elapsed"
 
     def __post_init__(self) -> None:
+        check_missed(self.missed)
         checked = {
             "models": _models(self.models),
             "start_probabilities": _distribution(self.start_probabilities, len(self.models)),

@@ -41,7 +41,9 @@ TRACKERS = {
 def plots(seed, n_axes, steps=50):
     """Irregular times, a maneuver, noise by plot and axis."""
     random = np.random.default_rng(seed)
-    times = np.cumsum(random.uniform(0.3, 3.0, steps))
+    intervals = random.uniform(0.3, 3.0, steps)
+    intervals[11::17] = 60.0
+    times = np.cumsum(intervals)
     sigma = random.uniform(0.5, 8.0, (steps, n_axes))
     bend = np.where(times > times[steps // 2], (times - times[steps // 2]) ** 2, 0.0)
     z = times[:, None] * random.normal(0.0, 9.0, n_axes) + np.outer(bend, np.arange(1, n_axes + 1))
@@ -53,6 +55,7 @@ class Textbook:
 
     def __init__(self, tracker, time, plot, variance):
         self.tracker, self.time, self.plot, self.variance = tracker, time, plot, variance
+        self.seen = time
         self.first, self.intervals, self.p = variance, [], np.array(tracker.start_probabilities)
         self.means = self.covariances = None
 
@@ -80,7 +83,7 @@ class Textbook:
                 p[2] = p[:, 2] = 0
             self.means.append(np.array([plot, (plot - self.plot) / dt, 0 * plot]))
             self.covariances.append(p)
-        self.time = time
+        self.time = self.seen = time
 
     def predict(self, time):
         """Probabilities, means and covariances at a later time, and those of all models."""
@@ -112,6 +115,11 @@ class Textbook:
         )
         return c, means, covariances, x, spread
 
+    def coast(self, time):
+        """Take a step without a plot."""
+        self.p, self.means, self.covariances, _, _ = self.predict(time)
+        self.time = time
+
     def correct(self, time, plot, variance):
         """Take a later plot."""
         c, means, covariances, _, _ = self.predict(time)
@@ -130,8 +138,8 @@ class Textbook:
         likelihoods = np.exp(np.array(logs) - max(logs))
         p = c * likelihoods / (c @ likelihoods) + 1e-7
         self.p, self.means, self.covariances = p / p.sum(), means, covariances
-        self.intervals.append(time - self.time)
-        self.time = time
+        self.intervals.append(time - self.seen)
+        self.time = self.seen = time
 
 
 @pytest.mark.parametrize("n_axes", [1, 2, 3])
@@ -166,6 +174,29 @@ def test_it_is_the_textbook_cycle(name, n_axes):
         assert history[-1] == pytest.approx(book.p, abs=1e-7)
     # The models have differed, or all of this would be about one filter.
     assert np.ptp(history, axis=0).max() > 0.5 or len(tracker.models) == 1
+
+
+@pytest.mark.parametrize("missed", ["elapsed", "step"])
+@pytest.mark.parametrize("name", TRACKERS)
+def test_missed_plots(name, missed):
+    tracker = replace(TRACKERS[name], missed=missed)
+    times, z, sigma = plots(12, 2)
+    sigma[:] = 4.0
+    z[[5, 13, 14, 15, 22], [0, 1, 1, 1, 0]] = np.nan
+    gone = np.isnan(z).any(axis=1)
+    book = Textbook(tracker, times[0], z[0], 16.0)
+    book.start(times[1], z[1], 16.0)
+    result = tracker.run(times, z, sigma)
+    for k in range(2, len(times)):
+        _, _, _, expected, _ = book.predict(times[k])
+        assert result.predicted[k] == pytest.approx(expected[0], abs=1e-6)
+        if gone[k]:
+            assert result.velocity[k] == pytest.approx(expected[1], abs=1e-6)
+            if missed == "step":
+                book.coast(times[k])
+        else:
+            book.correct(times[k], z[k], 16.0)
+    assert tracker.probabilities(result.state) == pytest.approx(book.p, abs=1e-7)
 
 
 def test_a_single_straight_model_is_the_kalman_filter():
@@ -381,6 +412,7 @@ PAIR = {
         ({"freedom": 5}, "freedom must be an even number >= 2, or infinity for a Gaussian, got 5"),
         ({"freedom": 0}, "freedom must be an even number >= 2, or infinity for a Gaussian, got 0"),
         ({"sigma_w": -2.0}, "sigma_w must be finite and > 0, got -2"),
+        ({"missed": "never"}, "missed: unknown 'never'; one of elapsed, step"),
     ],
 )  # fmt: skip
 def test_parameters_are_checked(change, message):
