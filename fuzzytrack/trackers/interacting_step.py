@@ -228,7 +228,7 @@ def _corrected(
     places: ModelRows, stride: int
 ) -> Callable[[Any, int, int, int, int, int, float, bool], None]:
     """Function that starts or corrects a model."""
-    rows, n_axes = places.rows, places.n_axes
+    rows, n_axes, infinity = places.rows, places.n_axes, math.inf
     plot_row, last_row, dt_row, gap_row, plots_row = (
         rows.plot, rows.last_plot, rows.dt, rows.gap, rows.plots
     )  # fmt: skip
@@ -248,7 +248,8 @@ def _corrected(
         r, pace = b[variance_row * stride + i], b[pace_row * stride + i]
         p11, p12, p13, p22, p23, p33 = read(b, (moved_row + 3 * n_axes) * stride + i)
         p11 = p11 if p11 > 0.0 else 0.0
-        k1, k2, k3, after = correct_optimally(p11, p12, p13, p22, p23, p33, r)
+        variance = r if seen else infinity
+        k1, k2, k3, after = correct_optimally(p11, p12, p13, p22, p23, p33, variance)
         for k in range(n_axes):
             z, last = b[(plot_row + k) * stride + i], b[(last_row + k) * stride + i]
             m = k * stride + i
@@ -267,10 +268,6 @@ def _corrected(
         s33 = q if accelerates else 0.0
         s23 = 0.5 * s33 * gap
         n11, n12, n13, n22, n23, n33 = after
-        # After a long gap rounding could make it negative.
-        n22, n33 = n22 if n22 > 0.0 else 0.0, n33 if n33 > 0.0 else 0.0
-        n11, n12, n13 = n11 if seen else p11, n12 if seen else p12, n13 if seen else p13
-        n22, n23, n33 = n22 if seen else p22, n23 if seen else p23, n33 if seen else p33
         after = (
             n11 if running else r, n12 if running else s12, n13 if running else 0.0,
             n22 if running else s22, n23 if running else s23, n33 if running else s33,
