@@ -149,6 +149,10 @@ def replay(found, cycles, missed_rows):
 def check_replay(found):
     """The error of a tracker grows at the rate that a refutation claims."""
     per_cycle = found.growth ** len(found.sequence)
+    product = np.eye(2)
+    for matrix in error_matrix(*found.sequence.T, found.elapsed / found.times.low):
+        product = matrix @ product
+    assert np.abs(np.linalg.eigvals(product)).max() == pytest.approx(per_cycle, rel=1e-6)
     cycles = int(np.ceil(np.log(1e6) / np.log(per_cycle)))
     claimed = per_cycle**cycles
     for missed_rows in (False, True):
@@ -179,7 +183,7 @@ def check_random_rule_bases(count, seed=11):
 @pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 @pytest.mark.untraced
 def test_verdicts_on_random_rule_bases():
-    verdicts = check_random_rule_bases(24)
-    assert verdicts["certified"] >= 5
-    assert verdicts["refuted"] >= 5
-    assert verdicts.get("not decided", 0) <= 2
+    verdicts = check_random_rule_bases(16)
+    assert verdicts["certified"] >= 4
+    assert verdicts["refuted"] >= 4
+    assert verdicts.get("not decided", 0) <= 1
