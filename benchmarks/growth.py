@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from benchmarks import machine
 from benchmarks.report import NotMeasured, Row, Target
 from benchmarks.scale import Scale
@@ -26,12 +28,18 @@ BYTES_AN_UPDATE = 20
 #: Of a lane's state, before and after a run.
 BYTES_A_TRACK = 400
 
+#: Tracks from which on the speed should not depend on their number.
+LARGE = 10_000
+
 Curve = list[dict[str, Any]]
 TRACKERS = {"fixed gains": fixed_tracker, "fuzzy exact": fuzzy_tracker}
 
 
 def tracks_curve(scale: Scale) -> Curve:
-    """Batches from small to large, one thread; sizes for which there is no memory say so."""
+    """Batches from small to large, one thread, into existing arrays.
+
+    Sizes for which there is no memory say so.
+    """
     curve: Curve = []
     for tracks, steps in scale.growth:
         point: dict[str, Any] = {"tracks": tracks, "steps": steps}
@@ -44,20 +52,20 @@ def tracks_curve(scale: Scale) -> Curve:
         large = plots.size > 2_000_000
         # A small job is done many times over, so that a round is long enough to time.
         times_over = 1 if scale.name == "tiny" else max(1, 300_000 // plots.size)
-        works = {}
+        works, out = {}, np.zeros_like(plots)
         for name, tracker in TRACKERS.items():
             warm(scale, tracker(), 1)
-            works[name] = partial(_many, tracker(), times, plots, times_over)
+            works[name] = partial(_many, tracker(), times, plots, out, times_over)
         repeats = min(3, scale.repeats) if large else scale.repeats
         for name, timing in take_turns(works, repeats).items():
             point[name] = updates_a_second(plots, timing.median / times_over)
-        del times, plots, works
+        del times, plots, out, works
     return curve
 
 
-def _many(tracker: Any, times: Any, plots: Any, count: int) -> None:
+def _many(tracker: Any, times: Any, plots: Any, out: Any, count: int) -> None:
     for _ in range(count):
-        predictions(tracker, times, plots)
+        predictions(tracker, times, plots, out=out)
 
 
 def threads_curve(scale: Scale) -> Curve:
@@ -80,12 +88,12 @@ def threads_curve(scale: Scale) -> Curve:
 
 
 def curve_rows(curve: Curve) -> list[Row]:
-    """Spread of the time per update from 1,000 tracks on, by tracker."""
+    """Spread of the time per update from `LARGE` tracks on, by tracker."""
     rows = []
     for name in TRACKERS:
-        large = [p for p in curve if p["tracks"] >= 1_000 and name in p]
+        large = [p for p in curve if p["tracks"] >= LARGE and name in p]
         if len(large) < 2:
-            rows.append(Row(SECTION, name, why="no two batches of 1,000 tracks or more"))
+            rows.append(Row(SECTION, name, why=f"no two batches of {LARGE:,} tracks or more"))
             continue
         rates = [p[name] for p in large]
         spread = max(rates) / min(rates)
@@ -97,7 +105,7 @@ def curve_rows(curve: Curve) -> list[Row]:
         rows.append(
             Row(SECTION, f"{name}, {first:,} to {last:,} tracks", max(rates), "M/s", "slowest size",
                 min(rates), Ratio(spread, spread, spread), Target("<=", 1.25),
-                note="M/s by size: " + "; ".join([listed, *missing]) + ".")
+                note="Into existing arrays. M/s by size: " + "; ".join([listed, *missing]) + ".")
         )  # fmt: skip
     return rows
 

@@ -4,17 +4,17 @@ Each loop knows its one filter, and is written as fast as we can. It has no acce
 and no results but the predictions; the fuzzy one has its rule base worked out by hand. Missed
 plots, irregular times and the two-point start are in: the time step of a track is the time since
 its last plot. Blocks of tracks stay in the first cache with time outermost; once all tracks of a
-block have started, a shorter step does the rest. It reads the plots and writes the predictions
+block have started, a shorter step does the rest, and where all of them had a plot at the step
+before, one that has a single time step for all. These read the plots and write the predictions
 where they are, in the widest vectors there are.
 """
 
 from __future__ import annotations
 
-import numba
 import numpy as np
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from benchmarks.compiling import inline, loop, wide
 from fuzzytrack.lanes.layout import aligned
 
 __all__ = ["bare", "fixed", "fuzzy", "vectorized"]
@@ -26,30 +26,15 @@ BLOCK = 240
 # until all its tracks have started, the number of plots up to 2.
 V, LAST, TIME, ERROR, PLOTS, SIZE = (k * BLOCK for k in range(1, 7))
 
-_inline = numba.njit(error_model="numpy", forceinline=True)
-_loop = numba.njit(error_model="numpy", nogil=True, cache=True)
-
-
-@intrinsic
-def _wide(typing_context):
-    """Ask for vectors of 512 bits in the function that calls this."""
-
-    def generate(context, builder, signature, arguments):
-        # llvmlite knows no such attribute, LLVM does.
-        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
-        return context.get_dummy_value()
-
-    return numba.types.void(), generate
-
 
 # Of the ways to write it, the one that compiles to the fewest instructions.
-@_inline
+@inline
 def _clip(r):
     r = 0.0 if r < 0.0 else r
     return 1.0 if r > 1.0 else r
 
 
-@_inline
+@inline
 def _ramps(x):
     """How far each of the sets nm, ns, ze, ps, pm and pl has taken over from the one below it."""
     outer, middle, inner = x * (1.0 / 0.3), x * 5.0, x * 10.0
@@ -59,7 +44,7 @@ def _ramps(x):
     )  # fmt: skip
 
 
-@_inline
+@inline
 def _rules(error, rate):
     """Stiffness and damping of the rule base stiffness-damping.
 
@@ -84,19 +69,19 @@ def _rules(error, rate):
     return (8.5 + stiffness) * (0.1 / 3.0), 0.89 + damping * (0.35 / 3.0)
 
 
-@_inline
+@inline
 def _larger(x, y):
     x, y = abs(x), abs(y)
     return x if x > y else y
 
 
-@_inline
+@inline
 def _relative(part, whole):
     # What is smaller than this is as good as none, and 0 comes out.
     return part / _larger(_larger(part, whole), 1e-300)
 
 
-@_inline
+@inline
 def _fuzzy_terms(e, change, before):
     """Corrections of position and of velocity times T, and the normalized error."""
     error = _relative(e, change)
@@ -106,7 +91,7 @@ def _fuzzy_terms(e, change, before):
     return zeta * shared, omega0 * shared, error
 
 
-@_inline
+@inline
 def _start(b, i, z, t):
     """A plot of a track that has not seen two before: position, velocity, and the count."""
     plots, last = b[PLOTS + i], b[LAST + i]
@@ -117,43 +102,91 @@ def _start(b, i, z, t):
         b[PLOTS + i] = plots + 1.0
 
 
-# A missed plot changes nothing.
-@_loop
-def _fixed_step(b, t, alpha, beta, plots, predicted):
-    _wide()
+# A missed plot changes nothing. What these return is 1 where it is missed.
+@inline
+def _fixed_lane(b, i, dt, alpha, per_dt, plots, predicted):
+    z, x, v = plots[i], b[i], b[V + i]
+    seen = z == z
+    prediction = x + v * dt
+    e = z - prediction
+    b[i] = prediction + alpha * e if seen else x
+    b[V + i] = v + per_dt * e if seen else v
+    predicted[i] = prediction
+    return 0 if seen else 1
+
+
+@inline
+def _fuzzy_lane(b, i, dt, rate, plots, predicted):
+    z, x, v, last, before = plots[i], b[i], b[V + i], b[LAST + i], b[ERROR + i]
+    seen = z == z
+    prediction = x + v * dt
+    e = z - prediction if seen else 0.0
+    change = z - last if seen else 0.0
+    x_term, v_term, error = _fuzzy_terms(e, change, before)
+    b[i] = prediction + x_term if seen else x
+    b[V + i] = v + v_term * rate if seen else v
+    b[LAST + i] = z if seen else last
+    b[ERROR + i] = error if seen else before
+    predicted[i] = prediction
+    return 0 if seen else 1
+
+
+# One step of a block: with one time step for all tracks, or to a time from that of each track's
+# last plot. Returned is how many plots are missing.
+@loop
+def _fixed_together(b, dt, alpha, beta, plots, predicted):
+    wide()
+    missing, per_dt = 0, beta / dt
     for i in range(min(len(plots), BLOCK)):
-        z, x, v, last = plots[i], b[i], b[V + i], b[TIME + i]
-        seen, dt = z == z, t - last
-        prediction = x + v * dt
-        e = z - prediction
-        b[i] = prediction + alpha * e if seen else x
-        b[V + i] = v + beta / dt * e if seen else v
-        b[TIME + i] = t if seen else last
-        predicted[i] = prediction
+        missing += _fixed_lane(b, i, dt, alpha, per_dt, plots, predicted)
+    return missing
 
 
-@_loop
-def _fuzzy_step(b, t, plots, predicted):
-    _wide()
+@loop
+def _fixed_apart(b, t, alpha, beta, plots, predicted):
+    wide()
+    missing = 0
     for i in range(min(len(plots), BLOCK)):
-        z, x, v, since = plots[i], b[i], b[V + i], b[TIME + i]
-        last, before = b[LAST + i], b[ERROR + i]
-        seen, dt = z == z, t - since
-        prediction = x + v * dt
-        e = z - prediction if seen else 0.0
-        change = z - last if seen else 0.0
-        x_term, v_term, error = _fuzzy_terms(e, change, before)
-        b[i] = prediction + x_term if seen else x
-        b[V + i] = v + v_term / dt if seen else v
-        b[LAST + i] = z if seen else last
-        b[TIME + i] = t if seen else since
-        b[ERROR + i] = error if seen else before
-        predicted[i] = prediction
+        last = b[TIME + i]
+        dt = t - last
+        gone = _fixed_lane(b, i, dt, alpha, beta / dt, plots, predicted)
+        b[TIME + i] = last if gone else t
+        missing += gone
+    return missing
 
 
-@_loop
+@loop
+def _fuzzy_together(b, dt, plots, predicted):
+    wide()
+    missing, rate = 0, 1.0 / dt
+    for i in range(min(len(plots), BLOCK)):
+        missing += _fuzzy_lane(b, i, dt, rate, plots, predicted)
+    return missing
+
+
+@loop
+def _fuzzy_apart(b, t, plots, predicted):
+    wide()
+    missing = 0
+    for i in range(min(len(plots), BLOCK)):
+        last = b[TIME + i]
+        dt = t - last
+        gone = _fuzzy_lane(b, i, dt, 1.0 / dt, plots, predicted)
+        b[TIME + i] = last if gone else t
+        missing += gone
+    return missing
+
+
+@loop
+def _part(b, plots, before, t):
+    """Give each track the time of its last plot, after all of them had one at the same time."""
+    for i in range(min(len(plots), BLOCK)):
+        b[TIME + i] = t if plots[i] == plots[i] else before
+
+
+@loop
 def _bare_step(b, dt, alpha, beta, plots, predicted):
-    _wide()
+    wide()
     per_dt = beta / dt
     for i in range(min(len(plots), BLOCK)):
         v = b[V + i]
@@ -165,7 +198,7 @@ def _bare_step(b, dt, alpha, beta, plots, predicted):
 
 
 # The first steps of a block, one track after the other; whether all have started.
-@_loop
+@loop
 def _fixed_first(b, t, alpha, beta, plots, predicted):
     started = True
     for i in range(len(plots)):
@@ -184,7 +217,7 @@ def _fixed_first(b, t, alpha, beta, plots, predicted):
     return started
 
 
-@_loop
+@loop
 def _fuzzy_first(b, t, plots, predicted):
     started = True
     for i in range(len(plots)):
@@ -203,37 +236,53 @@ def _fuzzy_first(b, t, plots, predicted):
     return started
 
 
-@_loop
+@loop
 def _fixed(b, times, plots, predicted, alpha, beta):
     steps, tracks = plots.shape
     for first in range(0, tracks, BLOCK):
         last = min(first + BLOCK, tracks)
         b[:] = 0.0
-        started = False
+        # The step at which all tracks had their last plot, if it was the same for all.
+        started, together = False, -1
         for k in range(steps):
             z, into = plots[k, first:last], predicted[k, first:last]
-            if started:
-                _fixed_step(b, times[k], alpha, beta, z, into)
-            else:
+            if not started:
                 started = _fixed_first(b, times[k], alpha, beta, z, into)
+            elif together < 0:
+                missing = _fixed_apart(b, times[k], alpha, beta, z, into)
+                together = k if missing == 0 else -1
+            else:
+                before = times[together]
+                missing = _fixed_together(b, times[k] - before, alpha, beta, z, into)
+                together = k if missing == 0 else -1
+                if missing:
+                    _part(b, z, before, times[k])
 
 
-@_loop
+@loop
 def _fuzzy(b, times, plots, predicted):
     steps, tracks = plots.shape
     for first in range(0, tracks, BLOCK):
         last = min(first + BLOCK, tracks)
         b[:] = 0.0
-        started = False
+        # The step at which all tracks had their last plot, if it was the same for all.
+        started, together = False, -1
         for k in range(steps):
             z, into = plots[k, first:last], predicted[k, first:last]
-            if started:
-                _fuzzy_step(b, times[k], z, into)
-            else:
+            if not started:
                 started = _fuzzy_first(b, times[k], z, into)
+            elif together < 0:
+                missing = _fuzzy_apart(b, times[k], z, into)
+                together = k if missing == 0 else -1
+            else:
+                before = times[together]
+                missing = _fuzzy_together(b, times[k] - before, z, into)
+                together = k if missing == 0 else -1
+                if missing:
+                    _part(b, z, before, times[k])
 
 
-@_loop
+@loop
 def _bare(b, dts, plots, predicted, alpha, beta):
     steps, tracks = plots.shape
     for first in range(0, tracks, BLOCK):
@@ -248,16 +297,16 @@ def _steps(times: Array) -> Array:
     return np.concatenate([[1.0], np.diff(times)])
 
 
-def fixed(times: Array, plots: Array, alpha: float, beta: float) -> Array:
-    """Predictions with fixed gains; plots of shape (n_steps, n_tracks)."""
-    predicted = np.empty_like(plots)
+def fixed(times: Array, plots: Array, alpha: float, beta: float, out: Array | None = None) -> Array:
+    """Predictions with fixed gains, maybe in an array for them; plots (n_steps, n_tracks)."""
+    predicted = np.empty_like(plots) if out is None else out
     _fixed(aligned(SIZE), times, plots, predicted, alpha, beta)
     return predicted
 
 
-def bare(times: Array, plots: Array, alpha: float, beta: float) -> Array:
+def bare(times: Array, plots: Array, alpha: float, beta: float, out: Array | None = None) -> Array:
     """Predictions of the recursion alone, from position and velocity 0; no plot may be missed."""
-    predicted = np.empty_like(plots)
+    predicted = np.empty_like(plots) if out is None else out
     _bare(aligned(SIZE), _steps(times), plots, predicted, alpha, beta)
     return predicted
 
@@ -269,12 +318,15 @@ def fuzzy(times: Array, plots: Array) -> Array:
     return predicted
 
 
-def vectorized(times: Array, plots: Array, alpha: Array, beta: Array) -> Array:
+def vectorized(
+    times: Array, plots: Array, alpha: Array, beta: Array, out: Array | None = None
+) -> Array:
     """Predictions in NumPy with gains for each track and axis, started by one plot.
 
-    Plots have the shape (n_steps, n_tracks, n_axes); none of the first may be missed.
+    Plots have the shape (n_steps, n_tracks, n_axes), as has the array for the predictions, if there
+    is one; none of the first may be missed.
     """
-    predicted = np.empty_like(plots)
+    predicted = np.empty_like(plots) if out is None else out
     predicted[0] = np.nan
     x, v = plots[0].copy(), np.zeros_like(plots[0])
     for k, dt in enumerate(np.diff(times), start=1):

@@ -7,7 +7,17 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from benchmarks import batch, engines, growth, kalman, machine, processes, profile, streaming
+from benchmarks import (
+    batch,
+    engines,
+    growth,
+    kalman,
+    machine,
+    maneuver,
+    processes,
+    profile,
+    streaming,
+)
 from benchmarks.report import Row, as_dict, collect
 from benchmarks.scale import Scale
 
@@ -24,6 +34,8 @@ JOBS: tuple[Job, ...] = (
     (batch.SECTION, "given gains", batch.numpy_gains),
     (batch.SECTION, "plug-in scheduler", batch.plugin),
     (profile.SECTION, "where the time goes", profile.where),
+    (maneuver.SECTION, "maneuver, by hand", maneuver.loop),
+    (maneuver.SECTION, "maneuver, imm-three", maneuver.imm),
     (kalman.SECTION, "Kalman CV", kalman.velocity),
     (kalman.SECTION, "Kalman CA", kalman.acceleration),
     (kalman.SECTION, "Kim-Lee", kalman.kim_lee),

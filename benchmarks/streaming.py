@@ -12,7 +12,15 @@ from benchmarks import peers
 from benchmarks.report import NotMeasured, Row, Target
 from benchmarks.scale import Scale
 from benchmarks.timing import ratio, take_turns
-from benchmarks.work import ALPHA, BETA, fixed_tracker, fuzzy_tracker, times_and_plots, warm
+from benchmarks.work import (
+    ALPHA,
+    BETA,
+    fixed_tracker,
+    fuzzy_tracker,
+    maneuver_tracker,
+    times_and_plots,
+    warm,
+)
 from fuzzytrack.trackers import TrackStore
 
 __all__ = ["scan", "single"]
@@ -26,13 +34,15 @@ OWN_TIMES = 1.3
 THERE = {"FilterPy GHFilter": 2.6, "FilterPy KalmanFilter": 13.5, "Stone Soup Kalman": 210.0}
 
 
-def _stream(tracker: Any, plots: Any, delays: Any = 0.0) -> Callable[[], Any]:
+def _stream(
+    tracker: Any, plots: Any, delays: Any = 0.0, sigma: float | None = None
+) -> Callable[[], Any]:
     times = [float(k) + delays for k in range(len(plots))]
 
     def work() -> Any:
-        state = tracker.start(plots[0], times[0])
+        state = tracker.start(plots[0], times[0], sigma)
         for k in range(1, len(plots)):
-            state = tracker.step(state, plots[k], times[k])
+            state = tracker.step(state, plots[k], times[k], sigma)
         return state
 
     return work
@@ -54,11 +64,12 @@ def single(scale: Scale) -> list[Row]:
     _, plots = times_and_plots(1, scale.stream_steps, axes=2)
     walk = np.ascontiguousarray(plots[:, 0])
     model = peers.Model(2, 1.0)
-    for tracker in (fuzzy_tracker(), fixed_tracker()):
+    for tracker in (fuzzy_tracker(), fixed_tracker(), maneuver_tracker()):
         warm(scale, tracker, 2)
     works = {
         "fuzzy gains": _stream(fuzzy_tracker(), walk),
         "fixed gains": _stream(fixed_tracker(), walk),
+        "maneuver": _stream(maneuver_tracker(), walk, sigma=10.0),
     }
     makers = {
         "FilterPy GHFilter": lambda: peers.filterpy_fixed(ALPHA, BETA),
@@ -79,6 +90,12 @@ def single(scale: Scale) -> list[Row]:
         0,
         Row(SECTION, "one track of 2 axes, fuzzy gains", ours, UNIT, target=Target("<=", LIMIT),
             note="One plot after the other through `step`, which checks them."),
+    )  # fmt: skip
+    rows.insert(
+        1,
+        Row(SECTION, "one track of 2 axes, maneuver", found["maneuver"].median * each, UNIT,
+            "fixed gains", fixed.median * each, ratio(fixed, found["maneuver"]),
+            Target(">=", 0.5), note="A step may take twice as long as with fixed gains."),
     )  # fmt: skip
     for name in (name for name in makers if name in found):
         theirs = found[name].median * each

@@ -18,13 +18,16 @@ from benchmarks.scale import Scale
 from fuzzytrack.schedulers import GainScheduler
 
 __all__ = [
-    "ALPHA", "BETA", "GivenGains", "difference", "fixed_tracker", "fuzzy_tracker",
-    "plugin_tracker", "predictions", "times_and_plots", "updates_a_second", "warm",
+    "ALPHA", "BETA", "LEVEL", "GivenGains", "difference", "fixed_tracker", "fuzzy_tracker",
+    "maneuver_tracker", "plugin_tracker", "predictions", "times_and_plots", "updates_a_second",
+    "warm",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
 
 ALPHA, BETA = 0.5377, 0.2018
+#: The strongest maneuver that is expected of a target (m/s²).
+LEVEL = 5.0
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -32,6 +35,12 @@ ROOT = Path(__file__).resolve().parents[1]
 def fixed_tracker() -> ft.AlphaBetaTracker:
     """Fixed gains."""
     return ft.AlphaBetaTracker(ft.FixedGains(ALPHA, BETA))
+
+
+@cache
+def maneuver_tracker() -> ft.AlphaBetaTracker:
+    """Gains from the covariance of a target that maneuvers as rules say."""
+    return ft.AlphaBetaTracker(ft.FuzzyScheduler("maneuver", level=LEVEL))
 
 
 @cache
@@ -128,10 +137,11 @@ def predictions(
     *,
     threads: int | None = 1,
     dtype: DTypeLike = np.float64,
+    out: Array | None = None,
 ) -> Array:
-    """Predictions of a batch, and nothing else."""
-    kept = ("predicted",)
-    return tracker.run(times, plots, sigma, keep=kept, threads=threads, dtype=dtype).predicted
+    """Predictions of a batch, and nothing else; in a new array unless there is one for them."""
+    given = {"keep": ("predicted",)} if out is None else {"out": {"predicted": out}}
+    return tracker.run(times, plots, sigma, threads=threads, dtype=dtype, **given).predicted
 
 
 def warm(scale: Scale, tracker: Any, axes: int) -> None:

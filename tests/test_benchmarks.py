@@ -66,12 +66,17 @@ def test_growth_is_a_curve(figures):
     assert all(point["fixed gains"] > 0.0 for point in curve)
 
 
-def jobs(tracks=600, steps=25):
-    """Irregular times, missed plots from the first on, more tracks than a block has."""
+def jobs(tracks=600, steps=25, axes=1):
+    """Irregular times, missed plots from the first on, more tracks than a block has.
+
+    At some steps no plot is missed, so that all tracks have the same time step.
+    """
     random = np.random.default_rng(5)
     times = np.cumsum(random.uniform(0.5, 2.0, steps))
-    plots = np.cumsum(random.normal(0.0, 10.0, (steps, tracks)), axis=0)
-    plots[random.random(plots.shape) < 0.2] = np.nan
+    plots = np.cumsum(random.normal(0.0, 10.0, (steps, tracks, axes)), axis=0)
+    missed = random.random((steps, tracks)) < 0.2
+    missed[[4, 5, 8, 9, 10, -1]] = False
+    plots[missed] = np.nan
     return times, plots
 
 
@@ -79,8 +84,8 @@ def test_the_fixed_loop_is_the_tracker():
     from benchmarks import handwritten
 
     times, plots = jobs()
-    ours = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)).run(times, plots[..., None]).predicted
-    theirs = handwritten.fixed(times, plots, 0.5, 0.2)
+    ours = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2)).run(times, plots).predicted
+    theirs = handwritten.fixed(times, plots[..., 0], 0.5, 0.2)
     np.testing.assert_allclose(theirs, ours[..., 0], rtol=0, atol=1e-9)
 
 
@@ -89,8 +94,34 @@ def test_the_fuzzy_loop_is_the_tracker():
 
     times, plots = jobs(tracks=520, steps=15)
     rules = ft.load_rulebase("stiffness-damping")
-    ours = ft.AlphaBetaTracker(ft.FuzzyScheduler(rules)).run(times, plots[..., None]).predicted
-    np.testing.assert_allclose(handwritten.fuzzy(times, plots), ours[..., 0], rtol=0, atol=1e-9)
+    ours = ft.AlphaBetaTracker(ft.FuzzyScheduler(rules)).run(times, plots).predicted
+    theirs = handwritten.fuzzy(times, plots[..., 0])
+    np.testing.assert_allclose(theirs, ours[..., 0], rtol=0, atol=1e-9)
+
+
+def test_the_maneuver_loop_is_the_tracker():
+    from benchmarks import handwritten_maneuver
+
+    times, plots = jobs(tracks=350, axes=2)
+    # Some tracks turn, so that all rules fire.
+    plots[12:, ::3, 1] += 60.0 * (times[12:, None] - times[12])
+    sigmas = np.random.default_rng(6).uniform(2.0, 30.0, 350)
+    ours = ft.AlphaBetaTracker(ft.FuzzyScheduler("maneuver", level=3.0))
+    theirs = handwritten_maneuver.maneuver(times, plots, sigmas, 3.0)
+    expected = ours.run(times, plots, sigmas[:, None]).predicted
+    np.testing.assert_allclose(theirs, expected, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["fixed", "bare", "vectorized"])
+def test_loops_write_into_existing_arrays(name):
+    from benchmarks import handwritten
+
+    times, plots = jobs(tracks=5, steps=12)
+    given = np.nan_to_num(plots) if name == "vectorized" else np.nan_to_num(plots[..., 0])
+    out = np.full_like(given, 77.0)
+    work = getattr(handwritten, name)
+    assert work(times, given, 0.5, 0.2, out) is out
+    np.testing.assert_array_equal(out, work(times, given, 0.5, 0.2))
 
 
 def test_the_bare_loop_is_the_recursion():
