@@ -23,6 +23,7 @@ from benchmarks.ranking import Table, lines, markdown
 from benchmarks.work import ROOT
 from fuzzytrack.arrays import Array
 from fuzzytrack.cli.output import progress, write_json
+from fuzzytrack.errors import TrackWarning
 from fuzzytrack.simulation.noise import streams
 from fuzzytrack.simulation.sampling import Sampling
 from fuzzytrack.simulation.scenario import PlotNoise
@@ -35,7 +36,7 @@ SAMPLING, SENSORS = Sampling("log-uniform", (1, 10)), PlotNoise(1.0, detection=0
 
 
 def lost(tracker: Tracker, tracks: int, seed: int) -> tuple[float, bool]:
-    """Share of tracks that are lost, and whether the run warned."""
+    """Share of tracks that are lost, and whether the run said that its gains do not suit."""
     runs = streams(seed, tracks)
     times = SAMPLING.times(np.arange(float(SCANS)), runs)
     _, truth = constant_velocity(speed=3.0, heading=0.6, at=times)
@@ -47,7 +48,7 @@ def lost(tracker: Tracker, tracks: int, seed: int) -> tuple[float, bool]:
     seen = ~np.isnan(plots.z[..., 0])
     late = seen & (np.cumsum(seen, axis=0) > PLOTS)
     wrong: Array = late & ~(distance <= FAR)
-    warned = any(issubclass(each.category, UserWarning) for each in said)
+    warned = any(issubclass(each.category, TrackWarning) for each in said)
     return float(wrong.any(axis=0).mean()), warned
 
 

@@ -152,8 +152,7 @@ def test_straight_tracks_that_are_lost():
     from benchmarks.straight import lost
 
     assert lost(make_tracker("kalman-cv:sigma_v=0.87"), 6, 3) == (0.0, False)
-    share, _ = lost(make_tracker("fixed:alpha=1.3:beta=1.2"), 6, 3)
-    assert share == 1.0
+    assert lost(make_tracker("fixed:alpha=1.3:beta=1.2"), 6, 3) == (1.0, True)
 
 
 def test_straight_tracks_as_a_table(tmp_path, capsys, monkeypatch):

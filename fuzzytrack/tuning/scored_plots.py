@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fuzzytrack.arrays import Array, Mask
+from fuzzytrack.errors import TrackWarning
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.published import ALL_SETS, track_set
 from fuzzytrack.trackers.base import Tracker
@@ -80,7 +81,7 @@ def squared_errors(tracker: Tracker, plots: ScoredPlots) -> Array:
     """
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         # The errors show it if gains do not suit the times.
-        warnings.simplefilter("ignore")
+        warnings.simplefilter("ignore", TrackWarning)
         predicted = tracker.run(plots.time, plots.z, plots.sigma).predicted
         squares = ((predicted - plots.truth) ** 2).sum(axis=2)
         known = np.where(np.isnan(squares), np.inf, squares)
