@@ -58,6 +58,7 @@ SCHEDULERS = {
     "linear-combination": LinearCombination(limit=20),
     "maneuver": fuzzy("maneuver"),
     "maneuver, level": ft.FuzzyScheduler("maneuver", level=5.0),
+    "maneuver, own axes": ft.FuzzyScheduler("maneuver", level=5.0, axes="own"),
     "maneuver-two-rules": ft.FuzzyScheduler("maneuver-two-rules", level=2.0, velocity_sigma=10.0),
     "omega-schedule": fuzzy("omega-schedule"),
     "omega-schedule on magnitude": fuzzy("omega-schedule", normalization="smoothed-magnitude"),

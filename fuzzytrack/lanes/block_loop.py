@@ -148,7 +148,8 @@ def _run(
     `saved` for the state. Returned is how many plots were infinite.
     """
     (
-        n_axes, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row, plots_row
+        n_axes, gain_sets, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row,
+        plots_row,
     ) = places  # fmt: skip
     use_wide_vectors()
     predicted, infinite, common = outputs[0], 0, time_strides[1] == 0
@@ -198,7 +199,7 @@ def _run(
             # A lane has one of each gain, and one of every other output for each axis.
             for o in range(1 if code != 0 else 0, len(outputs)):
                 if len(outputs[o]):
-                    width = n_axes if o < len(outputs) - 3 else 1
+                    width = n_axes if o < len(outputs) - 3 else gain_sets
                     for j in range(width):
                         place = (k * lanes + begin) * width + j
                         _copy_out(b, output_rows[o] + j, outputs[o], place, width, count)
@@ -270,7 +271,7 @@ def _one_step(fill: Callable[..., None]) -> Callable[..., int]:
         sigma: Any, new: Any,
     ) -> int:  # fmt: skip
         (
-            n_axes, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row, _
+            n_axes, _, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row, _
         ) = places  # fmt: skip
         lanes = old.shape[1]
         before, after = old.reshape(-1), new.reshape(-1)

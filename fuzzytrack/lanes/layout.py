@@ -41,11 +41,14 @@ class Rows:
     scratch : tuple of str
         Names of rows for intermediate results of a step, one row each. At the beginning of a step
         they contain values of another step.
+    gain_sets : int
+        Sets of gains of a lane: 1, or `n_axes` if each axis has its own.
     """
 
     n_axes: int
     n_memory: int
     scratch: tuple[str, ...] = ()
+    gain_sets: int = 1
 
     @property
     def position(self) -> int:
@@ -99,13 +102,13 @@ class Rows:
 
     @property
     def gains(self) -> int:
-        """First of three rows of the last gains: α, β, γ."""
+        """First of the rows of the last gains: `gain_sets` rows of α, then those of β and γ."""
         return self.state + 2 * self.n_axes
 
     @property
     def results(self) -> int:
         """Number of rows that a step writes: state and results."""
-        return self.state + 2 * self.n_axes + 3
+        return self.state + 2 * self.n_axes + 3 * self.gain_sets
 
     @property
     def now(self) -> int:
@@ -166,8 +169,12 @@ class Rows:
     def output(self, name: str) -> int:
         """First row where a step writes an output, by its name in a result."""
         if name in GAINS:
-            return self.gains + GAINS.index(name)
+            return self.gains + GAINS.index(name) * self.gain_sets
         return int(getattr(self, "position" if name == "filtered" else name))
+
+    def width(self, name: str) -> int:
+        """Number of rows of an output, by its name in a result."""
+        return self.gain_sets if name in GAINS else self.n_axes
 
     def shown(self, name: str) -> int:
         """First row of an output after a step, among those that are kept."""

@@ -135,7 +135,7 @@ class Runner:
             The lanes after the last step.
         outputs : dict of ndarray
             Of `keep`: predicted, filtered, velocity, acceleration, innovation, shaped as `plots`,
-            and alpha, beta, gamma, shape (n_steps, lanes).
+            and alpha, beta, gamma, shape (n_steps, lanes), or as `plots` if axes have their own.
 
         Raises
         ------
@@ -156,7 +156,9 @@ class Runner:
 
     def _output(self, name: str, plots: NDArray[Any], given: NDArray[Any] | None) -> NDArray[Any]:
         """Array for an output: one that was given, if it has the size, or a new one."""
-        shape = plots.shape[:2] if name in GAINS else plots.shape
+        # Gains that all axes of a lane share have no axis for them.
+        shared = name in GAINS and self.rows.gain_sets == 1
+        shape = plots.shape[:2] if shared else plots.shape
         if given is not None and given.size == math.prod(shape):
             # Compiled code would be compiled anew for a subclass of arrays.
             return given.view(np.ndarray).reshape(shape)
@@ -242,8 +244,8 @@ class Runner:
                 after[:, lane] = b[:n_kept]
         for name, output in outputs.items():
             column = rows.shown(name) - rows.predicted
-            part = trace[:, :, column : column + rows.n_axes]
-            output[...] = trace[:, :, column] if name in GAINS else part
+            part = trace[:, :, column : column + rows.width(name)]
+            output[...] = part.reshape(output.shape)
 
     def _run_compiled(
         self,
@@ -290,8 +292,9 @@ class Runner:
         """Numbers and positions of the rows of a lane, and of its outputs, for the loops."""
         rows, keeps = self.rows, self.program.keeps_state
         places = (
-            rows.n_axes, rows.state, rows.results, rows.now if keeps else rows.position, rows.now,
-            rows.last_time, self.restored, rows.plot, rows.sigma, rows.dt, rows.plots,
+            rows.n_axes, rows.gain_sets, rows.state, rows.results,
+            rows.now if keeps else rows.position, rows.now, rows.last_time, self.restored,
+            rows.plot, rows.sigma, rows.dt, rows.plots,
         )  # fmt: skip
         return places, tuple((rows.shown if keeps else rows.output)(name) for name in OUTPUTS)
 

@@ -21,7 +21,7 @@ from fuzzytrack.lanes.layout import Rows
 
 __all__ = [
     "CORRECT_RETURNS", "CORRECT_TAKES", "axis_end", "axis_results", "axis_shown", "begin_step",
-    "lane_end", "single_axis_step", "velocity_before",
+    "gain_results", "lane_end", "single_axis_step", "velocity_before",
 ]  # fmt: skip
 
 #: What `single_axis_step` calls a tracker's own arithmetic with, and what it needs of it.
@@ -174,6 +174,32 @@ def axis_end(rows: Rows, stride: int, *, results: bool = True) -> Callable[..., 
     return end
 
 
+def gain_results(rows: Rows, stride: int) -> Callable[..., None]:
+    """Function that writes a set of gains of a lane; NaN where no plot corrects a prediction.
+
+    Parameters
+    ----------
+    rows : Rows
+        Layout of a lane.
+    stride : int
+        Numbers between rows.
+
+    Returns
+    -------
+    callable
+        ``write(buffer, at, update, alpha, beta, gamma)``: `at` is the lane, plus `stride` times the
+        axis if each axis has its own gains.
+    """
+    nan, row, next_gain = math.nan, rows.gains * stride, rows.gain_sets * stride
+
+    def write(b: Any, at: int, update: bool, alpha: float, beta: float, gamma: float) -> None:
+        b[row + at] = alpha if update else nan
+        b[row + next_gain + at] = beta if update else nan
+        b[row + 2 * next_gain + at] = gamma if update else nan
+
+    return write
+
+
 def lane_end(
     rows: Rows, stride: int, *, two_point: bool = True, keep_gap: bool = True,
     count_gap: bool = True, settled: bool = False, results: bool = True,
@@ -203,8 +229,8 @@ def lane_end(
         ``end(buffer, lane, plots, gap, seen, alpha, beta, gamma)``, with `plots` before this step
         and `gap` from `begin_step`. Gains are written as NaN where no plot corrects a prediction.
     """
-    nan = math.nan
-    gap_row, plots_row, gains_row = (r * stride for r in (rows.gap, rows.plots, rows.gains))
+    gap_row, plots_row = (r * stride for r in (rows.gap, rows.plots))
+    write_gains = gain_results(rows, stride)
     first_count = 1.0 if two_point else 2.0
 
     def end(
@@ -220,10 +246,7 @@ def lane_end(
                 unused = seen if keep_gap else seen | running
                 b[gap_row + i] = 0.0 if unused else gap
         if results:
-            update = seen & running
-            b[gains_row + i] = alpha if update else nan
-            b[gains_row + stride + i] = beta if update else nan
-            b[gains_row + 2 * stride + i] = gamma if update else nan
+            write_gains(b, i, seen & running, alpha, beta, gamma)
 
     return end
 

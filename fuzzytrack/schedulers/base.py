@@ -31,6 +31,9 @@ class GainScheduler(ABC):
         Paper, or other origin.
     coupled : bool
         Whether the kernel gets all axes of a track at once and returns one set of gains for them.
+    own_gains : bool
+        Whether the kernel of a coupled scheduler returns α, β and γ as tuples, with the gains of
+        each axis.
     needs_sigma : bool
         Whether the kernel reads the standard deviation of the plot.
     sees_starts : bool
@@ -55,6 +58,7 @@ class GainScheduler(ABC):
 
     source: ClassVar[str] = ""
     coupled: bool = False
+    own_gains: bool = False
     needs_sigma: bool = False
     sees_starts: bool = False
     sees_misses: bool = False

@@ -28,11 +28,12 @@ class Converter(ABC):
 
     Attributes
     ----------
-    needs_sigma, sees_starts, uses_retention : bool
+    own_gains, needs_sigma, sees_starts, uses_retention : bool
     variance_start : str or None
         As for a `fuzzytrack.schedulers.base.GainScheduler`.
     """
 
+    own_gains: bool = False
     needs_sigma: bool = False
     sees_starts: bool = False
     uses_retention: bool = False

@@ -77,7 +77,7 @@ def checked_memory(scheduler: GainScheduler, n_axes: int) -> Memory:
         ) from None
 
 
-def answer_mistake(answer: Any, n_memory: int) -> str | None:
+def answer_mistake(answer: Any, n_memory: int, n_own: int | None = None) -> str | None:
     """What is wrong with the form of what a kernel returned; None if nothing is.
 
     Parameters
@@ -85,6 +85,8 @@ def answer_mistake(answer: Any, n_memory: int) -> str | None:
     answer : object
     n_memory : int
         Numbers in the memory that the kernel was given.
+    n_own : int, optional
+        Axes that each have their own gains; unless given, there is one set of gains.
     """
     if not isinstance(answer, tuple) or len(answer) != 5:
         return f"must return (alpha, beta, gamma, retention, memory), got {answer!r}"
@@ -93,6 +95,12 @@ def answer_mistake(answer: Any, n_memory: int) -> str | None:
         return f"must return its memory as a tuple, got {memory!r}"
     if len(memory) != n_memory:
         return f"must return a memory of length {n_memory} as it gets, got length {len(memory)}"
+    for gains in answer[:3]:
+        if n_own is not None and (not isinstance(gains, tuple) or len(gains) != n_own):
+            return (
+                "must return alpha, beta and gamma as tuples with a number for each axis, since "
+                f"own_gains is set, got {gains!r} for {n_own}"
+            )
     return None
 
 
@@ -117,7 +125,7 @@ def check_answer(scheduler: GainScheduler, n_axes: int) -> None:
         answer = kernel(zeros, zeros, 1.0, ones, memory)
     except Exception:
         return
-    mistake = answer_mistake(answer, len(memory))
+    mistake = answer_mistake(answer, len(memory), n_axes if scheduler.own_gains else None)
     if mistake is not None:
         raise PluginError(
             f"the kernel of {type(scheduler).__name__} {mistake}", Location.of_function(kernel)

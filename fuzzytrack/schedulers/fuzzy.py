@@ -155,6 +155,11 @@ class FuzzyScheduler(GainScheduler):
         return self.normalization.coupled
 
     @property
+    def own_gains(self) -> bool:  # type: ignore[override]
+        """Whether each axis of a track has its own gains although they are coupled."""
+        return self.coupled and self.converter.own_gains
+
+    @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
         """Whether plots need a standard deviation; from normalization and conversion."""
         return self.normalization.needs_sigma or self.converter.needs_sigma

@@ -99,6 +99,11 @@ class ManeuverCovariance(Converter):
             )
 
     @property
+    def own_gains(self) -> bool:  # type: ignore[override]
+        """Whether each axis has its own gains: with covariances of their own."""
+        return self.axes == "own"
+
+    @property
     def variance_start(self) -> str | None:  # type: ignore[override]
         """Start after which the covariance is that of the track: with `velocity_sigma`, one."""
         return None if self.velocity_sigma is None else "one-point"

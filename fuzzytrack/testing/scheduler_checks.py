@@ -54,9 +54,11 @@ def kernel_answers_in_form(scheduler: GainScheduler, seed: int) -> None:
     kernel, memory = _kernel(scheduler), checked_memory(scheduler, _axes(scheduler))
     for where, arguments in _sample_arguments(scheduler):
         answer = _answer(kernel, where, arguments, memory)
-        mistake = answer_mistake(answer, len(memory))
+        own = _axes(scheduler) if scheduler.own_gains else None
+        mistake = answer_mistake(answer, len(memory), own)
         expect(mistake is None, f"{where}: {mistake}")
-        numbers = (*answer[:3], *answer[4])
+        sets = _gain_sets(scheduler, answer)
+        numbers = (*(gain for gains in sets for gain in gains), *answer[4])
         expect(
             all(isinstance(n, float) and math.isfinite(n) for n in numbers),
             f"{where}: gains and memory must be finite floats, got {answer}",
@@ -68,8 +70,8 @@ def kernel_answers_in_form(scheduler: GainScheduler, seed: int) -> None:
             f"{retention!r}",
         )
         expect(
-            answer[2] == 0.0 or scheduler.uses_acceleration,
-            f"{where}: gamma must be 0 unless uses_acceleration is set, got {answer[2]:g}",
+            scheduler.uses_acceleration or all(gamma == 0.0 for _, _, gamma in sets),
+            f"{where}: gamma must be 0 unless uses_acceleration is set, got {answer[2]}",
         )
         expect(
             _answer(kernel, where, arguments, memory) == answer,
@@ -91,16 +93,20 @@ def gains_are_stable(scheduler: GainScheduler, seed: int) -> None:
     later = started
     for where, arguments in _sample_arguments(scheduler):
         for memory in (started, later):
-            alpha, beta, gamma, retention, after = _answer(kernel, where, arguments, memory)
-            phi = fade(_DT / retention) if scheduler.uses_retention else 1.0
-            expect(
-                bool(in_closed_region(alpha, beta, gamma, phi)),
-                f"{where}: alpha = {alpha:g}, beta = {beta:g}, gamma = {gamma:g}, phi = {phi:g} "
-                "make a filter unstable; stable are 0 <= alpha <= 2, beta >= 0, 2 alpha + beta <= "
-                "4 and, with phi = 1, 0 <= gamma <= 4 alpha beta/(2 - alpha). Or declare "
-                "may_be_unstable = True",
-            )
-        later = after
+            answer = _answer(kernel, where, arguments, memory)
+            phi = fade(_DT / answer[3]) if scheduler.uses_retention else 1.0
+            for gains in _gain_sets(scheduler, answer):
+                _expect_stable(where, *gains, phi)
+        later = answer[4]
+
+
+def _expect_stable(where: str, alpha: float, beta: float, gamma: float, phi: float) -> None:
+    expect(
+        bool(in_closed_region(alpha, beta, gamma, phi)),
+        f"{where}: alpha = {alpha:g}, beta = {beta:g}, gamma = {gamma:g}, phi = {phi:g} make a "
+        "filter unstable; stable are 0 <= alpha <= 2, beta >= 0, 2 alpha + beta <= 4 and, with "
+        "phi = 1, 0 <= gamma <= 4 alpha beta/(2 - alpha). Or declare may_be_unstable = True",
+    )
 
 
 def pickled_copy_gives_the_same_gains(scheduler: GainScheduler, seed: int) -> None:
@@ -138,6 +144,11 @@ def _axes(scheduler: GainScheduler) -> int:
 
 def _kernel(scheduler: GainScheduler) -> Callable[..., Any]:
     return scheduler.kernel(_axes(scheduler))
+
+
+def _gain_sets(scheduler: GainScheduler, answer: Any) -> list[tuple[float, float, float]]:
+    """The gains that a kernel returned, α, β and γ together; one set, or one for each axis."""
+    return list(zip(*answer[:3], strict=True)) if scheduler.own_gains else [answer[:3]]
 
 
 def _answer(kernel: Callable[..., Any], where: str, arguments: Any, memory: Memory) -> Any:

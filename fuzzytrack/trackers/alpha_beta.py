@@ -97,6 +97,11 @@ class AlphaBetaTracker(LaneTracker):
                     "variance of the velocity is not known"
                 )
         object.__setattr__(self, "scheduler", as_scheduler(scheduler))
+        if covariance is not None and self.scheduler.own_gains:
+            raise ValueError(
+                "covariance: a scheduler with gains of its own for each axis has covariances too; "
+                "remove it"
+            )
         object.__setattr__(self, "start_mode", start)
         object.__setattr__(self, "missed", missed)
         object.__setattr__(self, "covariance", covariance)
@@ -142,7 +147,7 @@ class AlphaBetaTracker(LaneTracker):
         memory = scheduler.initial_memory(n_axes)
         if scheduler.uses_retention:
             memory = (*memory, math.inf)
-        rows = Rows(n_axes, len(memory))
+        rows = Rows(n_axes, len(memory), gain_sets=n_axes if scheduler.own_gains else 1)
         way = StepWay(scheduler, self.start_mode == "two-point", self.missed == "elapsed")
         return LaneProgram(
             rows,

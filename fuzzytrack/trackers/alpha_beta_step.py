@@ -35,6 +35,7 @@ from fuzzytrack.lanes.start import (
     axis_results,
     axis_shown,
     begin_step,
+    gain_results,
     lane_end,
     velocity_before,
 )
@@ -85,7 +86,7 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
 
         return alone
 
-    axes = gather(n_axes, 1)
+    axes, spread = gather(n_axes, 1), scatter(n_axes, 1)
 
     def together(
         b: Any, i: int, own: Any, dt: float, update: bool, told: bool, memory: Any
@@ -100,7 +101,42 @@ def _caller(scheduler: GainScheduler, rows: Rows, stride: int) -> Callable[..., 
             axes(own, 2 * n_axes), axes(own, 3 * n_axes), dt, axes(own, 4 * n_axes), memory
         )
 
-    return together
+    if not scheduler.own_gains:
+        return together
+
+    def each(
+        b: Any, i: int, own: Any, dt: float, update: bool, told: bool, memory: Any
+    ) -> tuple[float, float, float, float, tuple[float, ...]]:
+        answer: Any = together(b, i, own, dt, update, told, memory)
+        alpha, beta, gamma, retention, memory = answer
+        spread(own, 5 * n_axes, alpha, True)
+        spread(own, 6 * n_axes, beta, True)
+        spread(own, 7 * n_axes, gamma, True)
+        # The gains of each axis are now where `_picker` finds them.
+        return 0.0, 0.0, 0.0, retention, memory
+
+    return each
+
+
+def _picker(scheduler: GainScheduler, n_axes: int) -> Callable[..., tuple[float, float, float]]:
+    """Function from the answer of `_caller` to the gains of axis `j`."""
+
+    def shared(
+        own: Any, j: int, alpha: float, beta: float, gamma: float
+    ) -> tuple[float, float, float]:
+        return alpha, beta, gamma
+
+    def each(
+        own: Any, j: int, alpha: float, beta: float, gamma: float
+    ) -> tuple[float, float, float]:
+        return own[5 * n_axes + j], own[6 * n_axes + j], own[7 * n_axes + j]
+
+    return each if scheduler.own_gains else shared
+
+
+def _room(scheduler: GainScheduler, n_axes: int) -> int:
+    """How many numbers of its own a lane needs for a step, see `_advance`."""
+    return (8 if scheduler.own_gains else 5) * n_axes
 
 
 def _follows(scheduler: GainScheduler) -> bool:
@@ -113,20 +149,21 @@ def _advance(
 ) -> Callable[[Any, int, Any, float, float], None]:
     """Function that takes lane `i` one step of length `dt` on, after so many plots.
 
-    `own` are numbers of the lane for this step: plots, predictions, innovations, and room for the
-    arguments of a coupled kernel, each of all axes.
+    `own` are numbers of the lane for this step: plots, predictions, innovations, room for the
+    arguments of a coupled kernel, and for gains, each of all axes.
     """
     scheduler, elapsed = way.scheduler, way.elapsed
-    n_axes, fades = rows.n_axes, scheduler.uses_retention
+    n_axes, fades, own_gains = rows.n_axes, scheduler.uses_retention, scheduler.own_gains
     # The retention time follows the memory of the scheduler.
     n_memory = rows.n_memory - fades
     call = _caller(scheduler, rows, stride)
     remembered, remember = gather(n_memory, stride), scatter(n_memory, stride)
     write_results, show = axis_results(rows, stride), axis_shown(rows, stride)
+    pick, write_gains = _picker(scheduler, n_axes), gain_results(rows, stride)
     # The time since the last plot is used at the second plot only.
     end_lane = lane_end(
         rows, stride, two_point=way.two_point, keep_gap=False, count_gap=not elapsed,
-        settled=settled, results=results,
+        settled=settled, results=results and not own_gains,
     )  # fmt: skip
     x_row, v_row, a_row, last_row, gap_row, memory_row = (
         row * stride
@@ -169,15 +206,16 @@ def _advance(
                 b[last_row + at], b[x_row + at], b[v_row + at], b[a_row + at]
             )  # fmt: skip
             z, prediction, e = own[j], own[n_axes + j], own[2 * n_axes + j]
+            alpha_j, beta_j, gamma_j = pick(own, j, alpha, beta, gamma)
             v, a = v_last, 0.0
             if accelerating:
                 a = phi * a_last if fades else a_last
                 v = v + a * dt
-                a_new = a + (gamma * (0.5 * rate * rate)) * e if running else 0.0
+                a_new = a + (gamma_j * (0.5 * rate * rate)) * e if running else 0.0
                 a = a_new if seen else a
             v = velocity_before(plots, v, z, last, gap, seen)
-            v = v + (beta * rate) * e if update else v
-            x = prediction + alpha * e if running else z
+            v = v + (beta_j * rate) * e if update else v
+            x = prediction + alpha_j * e if running else z
             x = x if seen else prediction
             # A missed plot leaves the state as it was.
             follows_time = seen | (not elapsed)
@@ -190,6 +228,8 @@ def _advance(
             b[last_row + at] = z if seen else last
             if results:
                 write_results(b, at, prediction, e, seen, running)
+                if own_gains:
+                    write_gains(b, at, update, alpha_j, beta_j, gamma_j)
                 if elapsed:
                     show(b, at, x, v, a)
 
@@ -230,7 +270,7 @@ def step_function(way: StepWay, rows: Rows, stride: int) -> Callable[[Any, int],
         Numbers between rows.
     """
     advance = _advance(way, rows, stride, settled=False, results=True)
-    n_axes, size = rows.n_axes, 5 * rows.n_axes
+    n_axes, size = rows.n_axes, _room(way.scheduler, rows.n_axes)
     plot_row, plots_row, dt_row = (row * stride for row in (rows.plot, rows.plots, rows.dt))
 
     def step(b: Any, count: int) -> None:
@@ -269,7 +309,7 @@ def steady_function(
         `plots` and `predicted`.
     """
     advance = _advance(way, rows, stride, settled=True, results=results)
-    n_axes, size, last = rows.n_axes, 5 * rows.n_axes, rows.n_axes - 1
+    n_axes, size, last = rows.n_axes, _room(way.scheduler, rows.n_axes), rows.n_axes - 1
     dt_row = rows.dt * stride
     promise = promise_independent_turns if n_axes == 1 else _no_promise
 

@@ -125,8 +125,9 @@ class TrackState:
     @property
     def gains(self) -> Gains:
         """Gains of the last step."""
-        rows = self.lanes[self.rows.gains : self.rows.gains + 3]
-        return Gains(*(gains_as_plots(row, self.shape, self.rows.n_axes) for row in rows))
+        rows, sets = self.rows, self.rows.gain_sets
+        parts = (self.lanes[k : k + sets].T for k in range(rows.gains, rows.results, sets))
+        return Gains(*(gains_as_plots(part, self.shape, rows.n_axes // sets) for part in parts))
 
 
 _set_time, _set_shape, _set_lanes, _set_rows = (

@@ -69,6 +69,68 @@ def test_tracks_are_those_of_full_matrices(name, n_axes, start, options):
                 assert row == pytest.approx(np.resize(want[key], n_axes), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize("n_axes", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("start", "options"),
+    [
+        ("two-point", {"level": 1.5}),
+        ("one-point", {"level": 1.5}),
+        ("two-point", {}),
+        ("one-point", {}),
+        ("one-point", {"level": 1.5, "velocity_sigma": 5.0}),
+    ],
+)
+def test_axes_of_their_own_noise_have_their_own_gains(n_axes, start, options):
+    t, z, sigma = record(n_axes)
+    sigma = sigma * np.array([0.3, 1.0, 2.0])[:n_axes]
+    seen = ~np.isnan(z).any(axis=1)
+    expected = track(
+        MANEUVER, t[seen], z[seen], sigma[seen], two_point=start == "two-point", own=True, **options
+    )
+    tracker = ft.AlphaBetaTracker(ft.FuzzyScheduler("maneuver", axes="own", **options), start)
+    result = tracker.run(t, z, sigma)
+    for row, want in zip(np.flatnonzero(seen)[-len(expected) :], expected, strict=True):
+        for gain in ("alpha", "beta", "gamma"):
+            found = getattr(result.gains, gain)[row]
+            assert found == pytest.approx(want[gain], rel=1e-9, abs=1e-12)
+        if "filtered" in want:
+            assert result.filtered[row] == pytest.approx(want["filtered"], rel=1e-9, abs=1e-9)
+    assert n_axes == 1 or (result.gains.alpha[40, 0] > 1.05 * result.gains.alpha[40, 1])
+    # Plot by plot, and compiled in a batch.
+    state = tracker.start(z[0], t[0], sigma[0])
+    for k in range(1, len(t)):
+        if k == len(t) - 1:
+            variance = tracker.predict(state, t[k], sigma[k]).innovation_variance
+            assert variance == pytest.approx(expected[-1]["gate"], rel=1e-9)
+        state = tracker.step(state, z[k], t[k], sigma[k])
+    np.testing.assert_array_equal(state.gains.beta, result.gains.beta[-1])
+    np.testing.assert_array_equal(state.position, result.filtered[-1])
+
+
+def test_own_gains_need_no_other_covariance():
+    with pytest.raises(ValueError, match="covariance: a scheduler with gains of its own for each"):
+        ft.AlphaBetaTracker("maneuver:axes=own", covariance=0.5)
+    assert ft.AlphaBetaTracker("maneuver", covariance=0.5).covariance == 0.5
+
+
+def test_own_gains_in_batches_and_in_compiled_code():
+    t, z, sigma = record(2)
+    tracker = ft.AlphaBetaTracker("maneuver:level=1.5:axes=own")
+    alone = tracker.run(t, z, sigma * [0.5, 2.0])
+    tracker.compile(2)
+    many = np.repeat(z[:, None], 2100, axis=1)
+    batch = tracker.run(t, many, (sigma * [0.5, 2.0])[:, None])
+    for name in ("alpha", "beta", "gamma"):
+        one, all_of_them = getattr(alone.gains, name), getattr(batch.gains, name)
+        assert all_of_them.shape == (len(t), 2100, 2)
+        np.testing.assert_array_equal(all_of_them[:, 1234], one)
+    np.testing.assert_array_equal(batch.filtered[:, 2099], alone.filtered)
+    states = tracker.start(many[0], t[0], sigma[0] * [0.5, 2.0])
+    for k in range(1, len(t)):
+        states = tracker.step(states, many[k], t[k], sigma[k] * [0.5, 2.0])
+    np.testing.assert_array_equal(states.gains.gamma[7], alone.gains.gamma[-1])
+
+
 @pytest.mark.parametrize("options", [":level=1.5", "", ":level=1.5:velocity_sigma=5"])
 @pytest.mark.parametrize("start", ["two-point", "one-point"])
 def test_rows_without_a_plot_leave_no_trace(options, start):

@@ -68,6 +68,25 @@ def test_what_a_kernel_returns(kernel, memory, promise):
         run_check("kernel-answers-in-form", scheduler_of(kernel, memory))
 
 
+@pytest.mark.parametrize("alpha", [0.5, (0.5,), [0.5, 0.5]])
+def test_own_gains_are_one_of_each_axis(alpha):
+    made = scheduler_of(
+        lambda e, d, dt, s, m: (alpha, (0.2, 0.2), (0.0, 0.0), 1.0, m), coupled=True, own_gains=True
+    )
+    with pytest.raises(AssertionError, match="as tuples with a number for each axis, since own_"):
+        run_check("kernel-answers-in-form", made)
+
+
+def test_the_gains_of_every_axis_are_looked_at():
+    def one_grows(e, d, dt, s, m):
+        return (0.5, 1.9), (0.2, 0.5), (0.0, 0.0), 1.0, m
+
+    made = scheduler_of(one_grows, coupled=True, own_gains=True)
+    run_check("kernel-answers-in-form", made)
+    with pytest.raises(AssertionError, match=r"alpha = 1.9, beta = 0.5, .* make a filter unstable"):
+        run_check("gains-are-stable", made)
+
+
 def test_gamma_needs_a_declaration():
     made = scheduler_of(lambda e, d, dt, s, m: (0.5, 0.2, 0.01, 1.0, m), uses_acceleration=False)
     with pytest.raises(AssertionError, match="gamma must be 0 unless uses_acceleration is set"):
