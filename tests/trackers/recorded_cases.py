@@ -184,6 +184,12 @@ SHIPPED = (
     ),
     Case("omega-schedule by table", "omega-schedule:method=table", noise=True, tolerant=True),
     Case("omega-schedule by relation", "omega-schedule:method=relation", noise=True, tolerant=True),
+    Case("maneuver", "maneuver:level=3", noise=True, compiled=True),
+    Case("maneuver, own axes", "maneuver:level=3:axes=own", noise=True, compiled=True),
+    Case(
+        "maneuver, from one plot", "maneuver:level=3:velocity_sigma=32:start=one-point", noise=True
+    ),
+    Case("maneuver-two-rules, no level", "maneuver-two-rules", noise=True, compiled=True),
 )  # fmt: skip
 
 OPENING = ", opening: growing-memory"
