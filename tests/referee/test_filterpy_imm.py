@@ -42,7 +42,9 @@ def model(accelerates, dt, sigma):
 @pytest.mark.parametrize("maneuver", ["ca", "cv"])
 def test_same_track_at_any_times_noise_and_gaps(maneuver, joint):
     times, z, sigma = plots()
-    ours = InteractingPair(0.1, 1.5, *STAY, maneuver=maneuver, joint=joint, velocity_sigma=9.0)
+    ours = InteractingPair(
+        0.1, 1.5, *STAY, maneuver=maneuver, joint=joint, velocity_sigma=9.0, missed="step"
+    )
     result = ours.run(times, z[:, None], sigma[:, None])
 
     accelerates = [False, maneuver == "ca"]

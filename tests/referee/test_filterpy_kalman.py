@@ -22,7 +22,9 @@ def test_same_track_at_any_times_noise_and_gaps(order):
     plots = 0.2 * times**2 + 5 * times + sigma * random.normal(size=80)
     plots[random.random(80) < 0.2] = np.nan
     plots[0] = 0.0
-    result = AlphaBetaTracker(CASES[order], start="one-point").run(times, plots, sigma)
+    result = AlphaBetaTracker(CASES[order], start="one-point", missed="step").run(
+        times, plots, sigma
+    )
 
     referee = kalman.KalmanFilter(dim_x=order, dim_z=1)
     referee.H = np.eye(order)[:1]

@@ -36,7 +36,9 @@ def test_same_track_at_any_times_noise_and_gaps(order):
     plots = 0.2 * times**2 - 5 * times + sigma * random.normal(size=60)
     plots[random.random(60) < 0.2] = np.nan
     plots[0] = 0.0
-    result = AlphaBetaTracker(CASES[order], start="one-point").run(times, plots, sigma)
+    result = AlphaBetaTracker(CASES[order], start="one-point", missed="step").run(
+        times, plots, sigma
+    )
 
     begin = datetime(2000, 1, 1)
     covariance = np.diag([sigma[0] ** 2, 81.0, 0.16][:order])
