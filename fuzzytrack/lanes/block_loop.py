@@ -19,13 +19,18 @@ from fuzzytrack.lanes.layout import BLOCK
 __all__ = ["compiled_one_step", "compiled_run"]
 
 
-# Of a view the compiler sees that indices are not negative, so it copies whole vectors.
+# Of a view the compiler sees that indices are not negative, so it copies whole vectors; where they
+# are side by side it must be told, or it copies one by one.
 def _copy_in(b: Any, row: int, source: Any, start: int, stride: int, count: int) -> None:
     into = b[row * BLOCK : row * BLOCK + count]
     if stride == 0:
         value = source[start]
         for i in range(count):
             into[i] = value
+    elif stride == 1:
+        out_of = source[start : start + count]
+        for i in range(count):
+            into[i] = out_of[i]
     else:
         out_of = source[start:]
         for i in range(count):
@@ -77,8 +82,12 @@ def _restore(b: Any, restored: int, missed: Any, found: int, saved: Any) -> None
 
 def _copy_out(b: Any, row: int, target: Any, start: int, stride: int, count: int) -> None:
     out_of, into = b[row * BLOCK : row * BLOCK + count], target[start:]
-    for i in range(count):
-        into[i * stride] = out_of[i]
+    if stride == 1:
+        for i in range(count):
+            into[i] = out_of[i]
+    else:
+        for i in range(count):
+            into[i * stride] = out_of[i]
 
 
 def _all_have(b: Any, row: int, count: int, least: float) -> bool:
