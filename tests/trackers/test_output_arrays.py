@@ -15,8 +15,14 @@ from fuzzytrack.trackers.result import KEPT
 from fuzzytrack.trackers.state import Gains
 
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
+OWN_GAINS = ft.AlphaBetaTracker(ft.FuzzyScheduler("maneuver", level=5.0, axes="own"))
 COUPLED = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("chan-style")))
-TRACKERS = {"one lane an axis": FIXED, "one lane a track": COUPLED, "imm": two_model_imm(level=5.0)}
+TRACKERS = {
+    "one lane an axis": FIXED,
+    "one lane a track": COUPLED,
+    "gains of each axis": OWN_GAINS,
+    "imm": two_model_imm(level=5.0),
+}
 
 
 def recording(tracks=3, steps=9, seed=5):
@@ -48,12 +54,13 @@ def singles(result):
     return found
 
 
-def expect_same(one, other):
+def expect_same(one, other, state=True):
     ours, theirs = singles(one), singles(other)
     assert ours.keys() == theirs.keys()
     for name, array in ours.items():
         np.testing.assert_array_equal(array, theirs[name], err_msg=name)
-    np.testing.assert_array_equal(one.state.lanes, other.state.lanes)
+    if state:
+        np.testing.assert_array_equal(one.state.lanes, other.state.lanes)
 
 
 @pytest.mark.parametrize("tracker", TRACKERS.values(), ids=TRACKERS)
@@ -125,6 +132,13 @@ def test_the_arrays_of_a_result_are_used_again():
     assert again.filtered is first.filtered
     assert again.gains is first.gains
     expect_same(again, FIXED.run(times, plots, keep=("filtered", "gains")))
+
+
+def test_gains_of_each_axis_are_used_again():
+    times, plots = recording()
+    first = OWN_GAINS.run(times, plots[::-1], 10.0)
+    assert OWN_GAINS.run(times, plots, 10.0, out=first).gains is first.gains
+    expect_same(first, OWN_GAINS.run(times, plots, 10.0, keep=KEPT), state=False)
 
 
 def test_gains_that_axes_share_are_not_used_again():
