@@ -35,8 +35,8 @@ def certify(
         str | None,
         typer.Option(
             metavar="LOW:HIGH",
-            help="Limits of the time between rows (s), which may change from row to row. "
-            "[default: constant]",
+            help="Limits of the time between rows (s; of gains from a covariance in units of τ₀), "
+            "which may change from row to row. [default: constant]",
         ),
     ] = None,
     missed: Annotated[

@@ -31,6 +31,9 @@ __all__ = [
     "write_json",
 ]
 
+# Spaces between the columns of a table.
+_GAP = 2
+
 
 def say(text: str = "") -> None:
     """Print a line without wrapping it."""
@@ -68,6 +71,8 @@ def print_table(
 ) -> None:
     """Print a table as wide as the terminal, 80 characters where there is none.
 
+    Numbers and words are never broken: a table with too many columns is wider than the terminal.
+
     Parameters
     ----------
     columns : sequence of str
@@ -83,14 +88,12 @@ def print_table(
     from rich.console import Console
     from rich.text import Text
 
+    console = Console(highlight=False)
+    widths = _widths([columns, *filter(None, rows)], words, console.width)
+    console.width = max(console.width, sum(widths) + _GAP * len(widths))
     table = _empty_table(box.SIMPLE_HEAD)
-    for number, name in enumerate(columns):
-        table.add_column(
-            Text(name),
-            justify="left" if number < words else "right",
-            overflow="fold",
-            no_wrap=number >= words,
-        )
+    for number, (name, width) in enumerate(zip(columns, widths, strict=True)):
+        table.add_column(Text(name), justify="left" if number < words else "right", width=width)
     for row in rows:
         if not row:
             table.add_section()
@@ -98,11 +101,27 @@ def print_table(
             table.add_row(*map(Text, row))
     if title:
         say(title)
-    console = Console(highlight=False)
     with console.capture() as printed:
         console.print(table)
     for line in printed.get().splitlines():
         say(line.rstrip())
+
+
+def _widths(lines: Sequence[Sequence[str]], words: int, room: int) -> list[int]:
+    """Widths of columns; where there is too little room, the widest ones of words are narrowed."""
+    from rich.cells import cell_len
+
+    widths, least = [], []
+    for number, cells in enumerate(zip(*lines, strict=True)):
+        parts = " ".join(cells).split() if number < words else cells
+        widths.append(max(map(cell_len, cells)))
+        least.append(max(map(cell_len, parts), default=0))
+    while sum(widths) + _GAP * (len(widths) - 1) > room:
+        wide = [width if width > low else 0 for width, low in zip(widths, least, strict=True)]
+        if not any(wide):
+            break
+        widths[wide.index(max(wide))] -= 1
+    return widths
 
 
 def _empty_table(style: Any) -> Table:

@@ -129,6 +129,8 @@ def tune(
     _print(found)
     if output is not None:
         say(f"wrote {output}")
+        if found.parameters:
+            say(f"tracker: {output}:{found.parameters}")
 
 
 def _check_output(output: str, tracker: str, data: list[str]) -> None:

@@ -82,7 +82,7 @@ def chosen(choices: Sequence[Choice], free: Collection[str] | None, whose: str) 
     """
     names = [choice.parameter.name for choice in choices]
     groups = sorted(set().union(*(choice.words for choice in choices))) if choices else []
-    allowed = (*groups, *names)
+    allowed = tuple(dict.fromkeys((*groups, *names)))
     if not choices or (free is not None and not free):
         what = f"; name some out of {', '.join(allowed)}" if allowed else ""
         raise ValueError(f"free: {whose} has no number that is free{what}")

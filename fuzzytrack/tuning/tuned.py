@@ -61,6 +61,9 @@ class Tuned:
         What makes it again: a specification, or a rule base in YAML.
     is_rulebase : bool
         Which of them.
+    parameters : str
+        Parameters that were given after the name of the rule base, as in ``level=5``. The file
+        does not hold them: give them after its name too.
     numbers, start : dict of str to float
         Its free numbers, and those where the search began.
     unused : tuple of str
@@ -83,6 +86,7 @@ class Tuned:
     tracker: Tracker
     text: str
     is_rulebase: bool
+    parameters: str
     numbers: dict[str, float]
     start: dict[str, float]
     unused: tuple[str, ...]
@@ -159,6 +163,7 @@ class Tuned:
             "start": self.start,
             "without_effect": list(self.unused),
             "specification": None if self.is_rulebase else self.text,
+            "parameters": self.parameters,
             "errors": [
                 {
                     "name": row.name,

@@ -165,10 +165,12 @@ def tune(
     best = {plan: search.best for plan, search in zip(plans, searches, strict=True)}
     rows = _rows(families, best, run)
     numbers = best[_Plan(0, _ALL)]
+    options = candidates.options if isinstance(candidates, RuleBaseNumbers) else ()
     tuned = Tuned(
         tracker=candidates.tracker(numbers),
         text=candidates.text(numbers),
         is_rulebase=isinstance(candidates, RuleBaseNumbers),
+        parameters=":".join(f"{name}={value}" for name, value in options),
         numbers=_named(candidates, numbers),
         start=_named(candidates, candidates.space.start),
         unused=unused,
@@ -410,10 +412,12 @@ def _named(family: Candidates, numbers: Numbers) -> dict[str, float]:
 
 def _head(tuned: Tuned) -> list[str]:
     """What the head of a tuned rule base says."""
+    given = [f"Give the same parameters with it: {tuned.parameters}."] if tuned.parameters else []
     return [
         f"Tuned on {tuned.data} with seed {tuned.seed} by fuzzytrack {__version__}, "
         f"{datetime.date.today().isoformat()}.",
         f"Objective: {tuned.objective}, {tuned.plots} plots; {tuned.folds} folds by {tuned.units}.",
         f"Held-out change against the start: {tuned.rows[0].change_text}; "
         f"free: {', '.join(tuned.numbers)}.",
+        *given,
     ]

@@ -60,6 +60,22 @@ def test_a_tuned_rule_base_is_written(run, tmp_path):
     assert rules.input("lag").sets[4].parameters[1] == found["numbers"]["lag.ps"]
 
 
+def test_parameters_that_a_rule_base_does_not_hold_are_told(run, recorded, tmp_path):
+    out = tmp_path / "tuned.yaml"
+    words = ("--tracker", "maneuver:level=6", "--free", "noise.calm,noise.strong", "-o", out)
+    result = run("tune", recorded, "--sigma", 3, *words, *QUICK)
+    assert result.exit_code == 0, result.output
+    assert result.stdout.splitlines()[-2:] == [f"wrote {out}", f"tracker: {out}:level=6"]
+    assert "# Give the same parameters with it: level=6." in out.read_text(encoding="utf-8")
+
+
+def test_a_word_for_no_number_lists_every_word_once(fails, recorded):
+    words = ("--tracker", "maneuver", "--free", "level")
+    line = fails("tune", recorded, "--sigma", 3, *words, *QUICK)
+    assert line.startswith("error: --free: rule base 'maneuver' has no number 'level'; allowed: ")
+    assert line.count("noise.calm,") == 1
+
+
 def test_numbers_without_an_effect_are_told(run, csv):
     text = rulebase_path("omega-schedule").read_text(encoding="utf-8")
     path = csv(text.replace("{singleton: [0.556]}", "{gaussmf: [0.556, 0.05]}"), "rules.yaml")
