@@ -65,7 +65,8 @@ for ax, variant in zip(axes.flat, chosen, strict=True):
     changes = [ranking.change(name, "Kalman CV", variant) for name in shown]
     values = [min(100 * change.value, 60) for change in changes]
     colors = ["#0072B2" if value < 0 else "#D55E00" for value in values]
-    ax.barh(shown, values, xerr=[min(100 * c.error, 20) for c in changes], color=colors)
+    errors = [100 * c.error if c.value < 0.6 else 0 for c in changes]
+    ax.barh(shown, values, xerr=errors, color=colors)
     ax.axvline(0, color="black", linewidth=0.8)
     ax.set(title=variant, xlim=(-25, 60))
     ax.set_axisbelow(True)

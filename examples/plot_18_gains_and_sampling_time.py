@@ -45,11 +45,16 @@ for name, law in laws.items():
 
 curve = np.geomspace(0.25, 4, 100)
 best = error(gains.optimal_for_steady_error(index * curve**2), curve)
-figure, axes = plt.subplots()
-for name, law in laws.items():
-    axes.semilogx(curve, error(law(curve), curve) / best, label=name)
-axes.set(xlabel="T", ylabel="error over the best one", ylim=(0.98, 1.6))
-axes.legend()
+figure, axes = plt.subplots(layout="constrained")
+for (name, law), color in zip(laws.items(), ("#D55E00", "#0072B2", "#009E73"), strict=True):
+    excess = 100 * (error(law(curve), curve) / best - 1)
+    axes.semilogx(curve, excess, label=name, color=color, linewidth=2)
+axes.set(xlabel="T, in units of the period", ylabel="error of a prediction over the best one (%)")
+axes.set(xlim=(0.25, 4), ylim=(-2, 60))
+axes.set_xticks(times, [f"{t:g}" for t in times])
+axes.minorticks_off()
+axes.grid(color="0.9")
+axes.legend(loc="upper center")
 
 # %%
 # Where T changes from plot to plot, another thing counts: how much noise of the plots remains in
