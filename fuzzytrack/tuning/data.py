@@ -15,6 +15,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.recording import Recording, Track, read_tracks
+from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.ragged import batches
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import streams, truth_of_runs
@@ -120,7 +121,8 @@ class TuningData:
         count = sum(int(track.scored.sum()) for track in self.tracks)
         if count < LEAST_PLOTS:
             raise DataError(
-                f"{self.name}: {count} plots can be scored; tuning needs {LEAST_PLOTS} at least"
+                f"{self.name}: {counted(count, 'plot')} can be scored; tuning needs "
+                f"{LEAST_PLOTS} at least"
             )
         plots = np.concatenate([track.plots for track in self.tracks])
         if (np.nanmax(plots, axis=0) == np.nanmin(plots, axis=0)).all():
