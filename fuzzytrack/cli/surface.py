@@ -13,6 +13,7 @@ from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.cli.pictures import check_picture, save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.plurals import counted
 from fuzzytrack.schedulers.review import grid_table
 
 __all__ = ["surface"]
@@ -45,7 +46,7 @@ def surface(
     if bool(others) != (at is not None):
         example = ",".join(f"{name}=..." for name in others)
         what = f"give the others a value with --at {example}" if others else "--at has no use"
-        raise ValueError(f"{rulebase} has {len(system.rules.inputs)} inputs; {what}")
+        raise ValueError(f"{rulebase} has {counted(len(system.rules.inputs), 'input')}; {what}")
     fixed = {} if at is None else options.numbers_at(at, others)
     if output is not None:
         check_picture(output)

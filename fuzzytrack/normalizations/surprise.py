@@ -1,4 +1,4 @@
-"""Size and agreement of the innovations, over the variance that is expected of them."""
+"""Size and agreement of the innovations, over the standard deviation that is expected of them."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Surprise(Normalization):
     of each axis and c.
     """
 
-    source: ClassVar[str] = "smoothed innovation over its variance, and its serial correlation"
+    source: ClassVar[str] = "innovation over its standard deviation, smoothed, and its correlation"
     # Without an agreement time, of the first alone.
     signals: ClassVar[tuple[str, ...]] = SIGNALS
     numbers: ClassVar[Mapping[str, str]] = {

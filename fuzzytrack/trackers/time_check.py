@@ -21,7 +21,7 @@ __all__ = ["WRONG_GAINS", "TrackTimes"]
 #: What is wrong, for messages.
 WRONG_GAINS = (
     "its gains do not suit times between plots that differ so much, and make the noise of the "
-    "plots more than ten times larger; use gains with a period, or kalman-cv"
+    "plots more than ten times larger; use gains with a period, maneuver or kalman-cv"
 )
 
 # Of a larger batch so many tracks are looked at, evenly spread.
