@@ -57,8 +57,8 @@ for name in trackers:
 # At a constant period rules on a smoothed innovation, ``omega-schedule``, are better than every
 # fixed gain and every Kalman filter. With irregular time they are not: dimensionless gains do not
 # suit it, and may diverge. The rules of ``maneuver`` set the noise of a covariance instead, which
-# knows the time since the last plot. They are better than an IMM of two models; one of three models
-# is better still.
+# follows the time since the last plot. They are better than an IMM of two models; one of three
+# models is better still.
 shown = [name for name in trackers if name != "Kalman CV"]
 figure, axes = plt.subplots(2, 3, figsize=(9, 6.5), sharey=True, layout="constrained")
 for ax, variant in zip(axes.flat, chosen, strict=True):

@@ -1,4 +1,4 @@
-"""Families of trackers: what is tuned, with the limits of its parameters."""
+"""Families of trackers that are tuned for the ranking, with the limits of their parameters."""
 
 from __future__ import annotations
 

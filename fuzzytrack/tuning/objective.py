@@ -1,4 +1,4 @@
-"""What tuning minimizes: the error of predictions on a set of tracks."""
+"""What tuning for the ranking minimizes: the error of predictions on a set of random tracks."""
 
 from __future__ import annotations
 
