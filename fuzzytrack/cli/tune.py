@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -117,8 +118,8 @@ def tune(
                 progress=watch,
             )
     except KeyboardInterrupt:
-        if state is None:
-            raise
+        if state is None or not Path(state).exists():
+            raise  # before the first trial nothing is kept
         typer.echo(f"interrupted; the search is in {state}; continue with --resume", err=True)
         raise typer.Exit(130) from None
     if output is not None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -114,8 +115,8 @@ def _check_numbers(
     try:
         outputs.converter(rules.output_names, (1.0,) * len(rules.outputs), **numbers)
     except ValueError as error:
-        places = [_location(words[key]) for key in numbers if key in str(error)]
-        raise RuleBaseError(str(error), places[0] if places else None) from error
+        named = {key: words[key] for key in numbers}
+        raise RuleBaseError(str(error), _place_of(named, error)) from error
 
 
 def _go_together(
@@ -230,6 +231,13 @@ def _location(word: str) -> Location | None:
     return getattr(word, "location", None)
 
 
+def _place_of(words: dict[str, str], error: ValueError) -> Location | None:
+    """Place of the first of some settings that a message names."""
+    # As a whole word: one name may be part of another.
+    named = re.findall(r"[\w-]+", str(error))
+    return next((_location(word) for key, word in words.items() if key in named), None)
+
+
 def _missing(rules: RuleBase, key: str) -> RuleBaseError:
     places = [_location(word) for word, _ in rules.scheduler]
     return RuleBaseError(
@@ -278,8 +286,7 @@ def _normalization(name: str, words: dict[str, str], others: tuple[str, ...]) ->
     try:
         made: Normalization = factory(**numbers)
     except ValueError as error:
-        places = [_location(word) for key, word in words.items() if key in str(error)]
-        raise RuleBaseError(str(error), places[0] if places else _location(name)) from error
+        raise RuleBaseError(str(error), _place_of(words, error) or _location(name)) from error
     return made
 
 

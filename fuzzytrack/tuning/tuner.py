@@ -165,12 +165,11 @@ def tune(
     best = {plan: search.best for plan, search in zip(plans, searches, strict=True)}
     rows = _rows(families, best, run)
     numbers = best[_Plan(0, _ALL)]
-    options = candidates.options if isinstance(candidates, RuleBaseNumbers) else ()
     tuned = Tuned(
         tracker=candidates.tracker(numbers),
         text=candidates.text(numbers),
         is_rulebase=isinstance(candidates, RuleBaseNumbers),
-        parameters=":".join(f"{name}={value}" for name, value in options),
+        parameters=_parameters(candidates),
         numbers=_named(candidates, numbers),
         start=_named(candidates, candidates.space.start),
         unused=unused,
@@ -215,6 +214,12 @@ def _candidates(
             text = stream.read()
         return rulebase_numbers(text, name, options, free)
     return specification(tracker, free, data.noise / data.interval**2)
+
+
+def _parameters(candidates: Candidates) -> str:
+    """Parameters that a rule base is given with, which its text does not hold."""
+    options = candidates.options if isinstance(candidates, RuleBaseNumbers) else ()
+    return ":".join(f"{name}={value}" for name, value in options)
 
 
 def _rivals(candidates: Candidates, data: TuningData, criterion: Criterion) -> list[Candidates]:
@@ -367,6 +372,7 @@ def _job(
         "criterion": type(run.criterion).__name__,
         "data": f"{run.data.name} {digest.hexdigest()[:16]}",
         "tracker": hashlib.sha256(families[0].text(start).encode()).hexdigest()[:16],
+        "parameters": _parameters(families[0]) or "none",
         "free numbers": ", ".join(p.name for p in families[0].space.parameters),
         "searches": str(len(plans)),
         "trials": str(trials),

@@ -93,9 +93,14 @@ def test_an_interrupted_search_is_resumed(run, tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(tuning, "tune_tracker", interrupted)
         result = run(*words)
+        # Before the first trial there is nothing to continue with.
+        assert (result.exit_code, result.stderr) == (130, "interrupted\n")
+        state.write_text("losses")
+        result = run(*words)
         assert result.exit_code == 130
         assert result.stderr == (f"interrupted; the search is in {state}; continue with --resume\n")
         assert run("tune", "mixed", "--tracker", "fixed").exit_code == 130
+    state.unlink()
     assert run(*words).exit_code == 0
     assert run(*words, "--resume").exit_code == 0
 

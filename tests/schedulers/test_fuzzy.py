@@ -135,6 +135,17 @@ def test_the_place_of_a_wrong_number_is_its_own(rules):
     assert line[caught.value.location.column - 1 :] == "1.5}"
 
 
+@pytest.mark.parametrize("name", ["agreement_time", "time", "gap"])
+def test_the_place_of_a_wrong_number_is_not_that_of_a_name_within_its_own(name):
+    rules = ft.load_rulebase("maneuver")
+    number = dict(rules.scheduler)[name]
+    wrong = changed(rules, f"{name}: {number}", f"{name}: 0")
+    with pytest.raises(ft.RuleBaseError, match=f" {name} must be finite and > 0, got 0") as caught:
+        ft.FuzzyScheduler(wrong)
+    line = dumps_rulebase(wrong).splitlines()[caught.value.location.line - 1]
+    assert line[: caught.value.location.column - 1].endswith(f" {name}: ")
+
+
 def test_numbers_of_the_normalization(rules):
     with_rho = changed(rules, "chan, gains: w-domain}", "smoothed, rho: 0.25, gains: w-domain}")
     assert ft.FuzzyScheduler(with_rho).normalization.rho == 0.25

@@ -156,6 +156,20 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_end(tmp_path):
         ft.tune("mixed", "fixed", resume=True, **LONGER)
 
 
+@pytest.mark.untraced
+def test_a_search_is_not_resumed_with_other_parameters(tmp_path):
+    # A rule base does not hold its level.
+    given = {**QUICK, "trials": 3, "free": ["delay"], "state": tmp_path / "search.json"}
+    whole = ft.tune("mixed", "maneuver:level=3", **given)
+    message = r"resume: parameters is level=9, in the search of .* it was level=3"
+    with pytest.raises(ValueError, match=message):
+        ft.tune("mixed", "maneuver:level=9", resume=True, **given)
+    with pytest.raises(ValueError, match="resume: parameters is none, in"):
+        ft.tune("mixed", "maneuver", resume=True, **given)
+    again = ft.tune("mixed", "maneuver:level=3", resume=True, **given)
+    assert numbers(again) == numbers(whole)
+
+
 def test_numbers_without_an_effect_are_told_and_left_alone():
     # Weighted centers: how wide a set of an output is does not matter, where it is does.
     text = rulebase_path("omega-schedule").read_text(encoding="utf-8")
