@@ -57,6 +57,8 @@ def print_covariance_certificate(
     ):
         say(f"  {quantity} in [{low:g}, {high:g}] {unit}")
     say()
+    say("Units: a₀ = level/3, τ₀ = √(σ/a₀) with σ of the first plot, for a given level.")
+    say()
     left = ", ".join(
         f"{share:.3f} after {plots} plots" for plots, share in found.contraction.items()
     )

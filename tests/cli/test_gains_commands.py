@@ -324,6 +324,7 @@ def test_certified_by_a_theorem(run, csv):
     assert text.startswith("maneuver-two-rules: certified\nCovered: time between rows in [0.5, 2]")
     assert "  time since the last plot in [0.5, 4] τ₀\n" in text
     assert "  σ of a plot in [0.5, 2] σ of the first one\n" in text
+    assert "\nUnits: a₀ = level/3, τ₀ = √(σ/a₀) with σ of the first plot" in text
     assert f"{found['contraction']['20']:.3f} after 20 plots" in " ".join(text.split())
     assert max(map(len, text.splitlines())) <= 80
     rules = rulebase_path("maneuver-two-rules").read_text().replace("[0.12, 2, 41]", "[0, 2, 41]")
