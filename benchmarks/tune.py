@@ -10,9 +10,9 @@ from multiprocessing import get_context
 
 import numpy as np
 
+from benchmarks.families import FAMILIES
+from benchmarks.objective import prediction_mse
 from fuzzytrack.simulation.published import TRACK_SETS, track_set
-from fuzzytrack.tuning import FAMILIES
-from fuzzytrack.tuning.objective import prediction_mse
 from fuzzytrack.tuning.parameters import Parameter, Space
 from fuzzytrack.tuning.search import Search
 from fuzzytrack.tuning.trial import REFUSED

@@ -5,17 +5,14 @@ measures trackers on fresh tracks, under the conditions of `VARIANTS`.
 """
 
 from fuzzytrack.tuning.data import TuningData, TuningTrack
-from fuzzytrack.tuning.families import FAMILIES, Family
 from fuzzytrack.tuning.ranking import Change, Ranking, rank
 from fuzzytrack.tuning.tuned import Tuned
 from fuzzytrack.tuning.tuner import tune
 from fuzzytrack.tuning.variants import VARIANTS, Variant
 
 __all__ = [
-    "FAMILIES",
     "VARIANTS",
     "Change",
-    "Family",
     "Ranking",
     "Tuned",
     "TuningData",

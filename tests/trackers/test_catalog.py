@@ -8,7 +8,6 @@ from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.schedulers.catalog import make_scheduler
-from fuzzytrack.simulation.published import track_set
 from fuzzytrack.simulation.scenario import PlotNoise, Scenario
 from fuzzytrack.testbed.comparison import compare, compare_tracks
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -16,7 +15,6 @@ from fuzzytrack.testbed.operations import count_operations
 from fuzzytrack.trackers import trackers
 from fuzzytrack.trackers.catalog import as_trackers, catalog, make_tracker
 from fuzzytrack.trackers.track_store import TrackStore
-from fuzzytrack.tuning.objective import prediction_mse
 
 
 @pytest.fixture
@@ -186,7 +184,6 @@ WAYS = {
     "monte_carlo": an_experiment,
     "count_operations": lambda tracker: count_operations(tracker).total,
     "TrackStore": a_store,
-    "prediction_mse": lambda tracker: prediction_mse(tracker, track_set("report", 2, 3), 1),
 }
 
 

@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.families import FAMILIES
+from benchmarks.objective import prediction_mse
 from fuzzytrack.simulation.published import track_set
-from fuzzytrack.tuning import FAMILIES
-from fuzzytrack.tuning.objective import prediction_mse
 
 
 def test_the_error_is_that_of_a_loop_over_scans():

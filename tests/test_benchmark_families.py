@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from benchmarks.families import FAMILIES, stretched
+from benchmarks.objective import prediction_mse
 from fuzzytrack.simulation.published import track_set
 from fuzzytrack.trackers import Tracker
-from fuzzytrack.tuning.families import FAMILIES, stretched
-from fuzzytrack.tuning.objective import prediction_mse
 
 
 def test_stretched_limits_move_sets_and_outputs_alike():
