@@ -56,7 +56,7 @@ def three_model_imm(
     moderate_start, strong_start : float
         Probabilities of the maneuvers for a new track, >= 0; their sum is at most 1.
     freedom : float
-        Degrees of freedom of the likelihood, an even number >= 2, or infinity.
+        Degrees of freedom of the likelihood, an even number from 2 to 1000, or infinity.
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0; otherwise the `sigma` of each.
     missed : {"elapsed", "step"}

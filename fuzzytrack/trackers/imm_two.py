@@ -48,7 +48,7 @@ def two_model_imm(
     maneuver_start : float
         Probability, 0 to 1, that a new track maneuvers.
     freedom : float
-        Degrees of freedom of the likelihood, an even number >= 2, or infinity.
+        Degrees of freedom of the likelihood, an even number from 2 to 1000, or infinity.
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0; otherwise the `sigma` of each.
     missed : {"elapsed", "step"}

@@ -18,6 +18,9 @@ from fuzzytrack.trackers.state import TrackState, check_rows
 
 __all__ = ["InteractingModels", "MotionModel"]
 
+#: A plot takes half as many multiplications; with more, Student's distribution is a Gaussian.
+_MOST_FREEDOM = 1000
+
 
 @dataclass(frozen=True, repr=False)
 class InteractingModels(LaneTracker):
@@ -52,8 +55,8 @@ class InteractingModels(LaneTracker):
         Standard deviation of the acceleration of a new track (in a0), >= 0.
     freedom : float
         Degrees of freedom of Student's distribution, which is the likelihood of a plot: an even
-        number >= 2, or infinity for a Gaussian one. The fewer they are, the less an outlier says
-        about the models.
+        number from 2 to 1000, or infinity for a Gaussian one. The fewer they are, the less an
+        outlier says about the models.
     sigma_w : float, optional
         Standard deviation of all plots (m), > 0. Unless given, the `sigma` of each plot is used.
     missed : {"elapsed", "step"}
@@ -229,8 +232,9 @@ def _gap(gap: float) -> float:
 
 def _degrees(freedom: float) -> float:
     found = float(freedom)
-    if not (found == math.inf or (found >= 2.0 and found % 2.0 == 0.0)):
+    if not (found == math.inf or (2.0 <= found <= _MOST_FREEDOM and found % 2.0 == 0.0)):
         raise ValueError(
-            f"freedom must be an even number >= 2, or infinity for a Gaussian, got {found:g}"
+            f"freedom must be an even number from 2 to {_MOST_FREEDOM}, or infinity for a "
+            f"Gaussian, got {found:g}"
         )
     return found

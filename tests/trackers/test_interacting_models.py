@@ -388,6 +388,7 @@ PAIR = {
     "rates": ((0.0, 0.1), (0.2, 0.0)),
     "start_probabilities": (0.9, 0.1),
 }
+FREEDOM = "freedom must be an even number from 2 to 1000, or infinity for a Gaussian"
 
 
 @pytest.mark.parametrize(
@@ -409,8 +410,9 @@ PAIR = {
         ({"gap": 0.0}, "gap must be > 0, or infinity, got 0"),
         ({"gap": math.nan}, "gap must be > 0, or infinity, got nan"),
         ({"start_acceleration": -1.0}, "start_acceleration must be finite and >= 0, got -1"),
-        ({"freedom": 5}, "freedom must be an even number >= 2, or infinity for a Gaussian, got 5"),
-        ({"freedom": 0}, "freedom must be an even number >= 2, or infinity for a Gaussian, got 0"),
+        ({"freedom": 5}, f"{FREEDOM}, got 5"),
+        ({"freedom": 0}, f"{FREEDOM}, got 0"),
+        ({"freedom": 1002}, f"{FREEDOM}, got 1002"),
         ({"sigma_w": -2.0}, "sigma_w must be finite and > 0, got -2"),
         ({"missed": "never"}, "missed: unknown 'never'; one of elapsed, step"),
     ],
