@@ -136,7 +136,9 @@ class ManeuverCovariance(Converter):
             return of_intervals
 
         acceleration = self.level / 3.0
-        return lambda time, span, intervals: (time, acceleration)
+        # As a product it goes into a tuple of numbers, also in code that reads constants from
+        # memory (`fuzzytrack.kernels.slots`).
+        return lambda time, span, intervals: (time, 1.0 * acceleration)
 
     def expect(self, n_axes: int, coupled: bool) -> Expect:
         """Predict the covariances; see `Converter.expect`."""
