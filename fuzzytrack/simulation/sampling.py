@@ -18,6 +18,8 @@ __all__ = ["PATTERNS", "REGULAR", "Sampling"]
 
 # Scans of all tracks together, so that a short period cannot ask for more memory than there is.
 MAX_SCANS = 10_000_000
+# Of intervals; in a larger one the short interval is lost when times are rounded.
+MAX_RATIO = 1e9
 
 
 @dataclass(frozen=True)
@@ -176,7 +178,8 @@ def _log_uniform(rng: np.random.Generator, count: int, low: float, high: float) 
 
 
 def _two(own: tuple[float, ...]) -> bool:
-    return len(own) == 2 and all(math.isfinite(value) and value > 0 for value in own)
+    positive = all(math.isfinite(value) and value > 0 for value in own)
+    return len(own) == 2 and positive and max(own) <= MAX_RATIO * min(own)
 
 
 class Pattern(NamedTuple):
@@ -206,14 +209,19 @@ PATTERNS = {
     "jitter": Pattern(
         "a number > 0 and < 0.5", lambda own: len(own) == 1 and 0 < own[0] < 0.5, _jitter, True
     ),
-    "alternate": Pattern("two intervals > 0", _two, _alternate),
+    "alternate": Pattern("two intervals > 0, one at most 1e9 times the other", _two, _alternate),
     "burst": Pattern(
-        "a whole number of plots >= 2 and a gap > 1",
-        lambda own: _two(own) and own[0] >= 2 and own[0].is_integer() and own[1] > 1,
+        "a whole number of plots >= 2 and a gap > 1, at most 1e9",
+        lambda own: (
+            len(own) == 2 and own[0] >= 2 and own[0].is_integer() and 1 < own[1] <= MAX_RATIO
+        ),
         _burst,
     ),
     "log-uniform": Pattern(
-        "two rising intervals > 0", lambda own: _two(own) and own[0] < own[1], _log_uniform, True
+        "two rising intervals > 0, one at most 1e9 times the other",
+        lambda own: _two(own) and own[0] < own[1],
+        _log_uniform,
+        True,
     ),
 }
 
