@@ -23,7 +23,7 @@ from benchmarks.work import (
 from fuzzytrack.kernels.llvm import call, pointer
 from fuzzytrack.lanes import block_loop
 from fuzzytrack.lanes.layout import BLOCK, OUTPUTS, aligned
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 
 __all__ = ["parts", "where"]
 

@@ -171,7 +171,7 @@ def test_the_parts_of_a_batch_are_the_batch(small):
 def test_the_steady_step_alone_tracks():
     from benchmarks import profile, work
     from fuzzytrack.lanes.layout import BLOCK, aligned
-    from fuzzytrack.trackers.lane_tracker import runner
+    from fuzzytrack.trackers.runners import runner
 
     core = runner(work.fixed_tracker(), 1)
     buffer, predicted = aligned(core.rows.total * BLOCK), aligned(BLOCK)

@@ -15,6 +15,7 @@ __all__ = [
     "Dt",
     "Id",
     "Json",
+    "PlotSigma",
     "Plots",
     "Plugins",
     "Scenario",
@@ -50,6 +51,12 @@ Dt = Annotated[float, typer.Option("--dt", metavar="T", help="Sampling time, s."
 Sigma = Annotated[
     float | None,
     typer.Option("--sigma", metavar="S", help="Standard deviation of a measured position, m."),
+]
+PlotSigma = Annotated[
+    float | None,
+    typer.Option(
+        "--sigma", metavar="S", help="Standard deviation of the plots, if the tracker needs it."
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 Plugins = Annotated[

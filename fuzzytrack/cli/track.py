@@ -49,10 +49,7 @@ def track(
     time: options.Time = None,
     id: options.Id = None,
     axes: options.Axes = None,
-    sigma: Annotated[
-        float | None,
-        typer.Option(metavar="S", help="Standard deviation of the plots, if the tracker needs it."),
-    ] = None,
+    sigma: options.PlotSigma = None,
     sort: options.Sort = False,
     output: Annotated[
         str | None,

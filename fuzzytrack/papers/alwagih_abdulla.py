@@ -25,7 +25,7 @@ from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.bank import ParallelBank
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 from fuzzytrack.trackers.window_search import WindowSearch
 
 if TYPE_CHECKING:

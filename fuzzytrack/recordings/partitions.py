@@ -20,7 +20,8 @@ from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.tasks import Progress, run_tasks
 from fuzzytrack.trackers.catalog import as_lane_tracker
-from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
+from fuzzytrack.trackers.compilation import announce
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["track_partitions"]
 

@@ -14,7 +14,8 @@ from fuzzytrack.io.recording import Piece
 from fuzzytrack.lanes.layout import GAINS
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.catalog import as_lane_tracker
-from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
+from fuzzytrack.trackers.compilation import announce
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.result import checked_keep
 from fuzzytrack.trackers.track_store import Slots, TrackStore
 

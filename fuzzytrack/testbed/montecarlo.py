@@ -20,7 +20,7 @@ from fuzzytrack.testbed.chunk_store import ChunkStore
 from fuzzytrack.testbed.results import Results, Sample
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
-from fuzzytrack.trackers.lane_tracker import announce
+from fuzzytrack.trackers.compilation import announce
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 

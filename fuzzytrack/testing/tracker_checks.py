@@ -26,7 +26,8 @@ from fuzzytrack.testing.samples import (
     sample_plots,
 )
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.lane_tracker import LaneTracker, runner
+from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.runners import runner
 
 __all__ = [
     "LANE_CHECKS",

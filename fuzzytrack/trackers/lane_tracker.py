@@ -6,10 +6,8 @@ import operator
 import traceback
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,8 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import Location, PluginError, TrackWarning
-from fuzzytrack.kernels.shared_code import SharedCode
-from fuzzytrack.lanes.layout import BLOCK, Rows
+from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.plots import (
     PlotLayout,
     as_plots,
@@ -36,12 +33,11 @@ from fuzzytrack.trackers.compiled_step import CompiledStep
 from fuzzytrack.trackers.output_arrays import Out, OutputArrays
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.runners import runner
 from fuzzytrack.trackers.state import TrackState, check_rows
 from fuzzytrack.trackers.time_check import WRONG_GAINS, TrackTimes
 
-__all__ = [
-    "MISSED", "LaneTracker", "announce", "check_missed", "learn_code", "runner", "sharing_code",
-]  # fmt: skip
+__all__ = ["MISSED", "LaneTracker", "check_missed"]
 
 #: What `LaneTracker.missed` can be.
 MISSED = ("elapsed", "step")
@@ -251,6 +247,8 @@ class LaneTracker(ABC):
         DataError, ValueError
             As for `run`.
         """
+        if not isinstance(state, TrackState):
+            raise _no_state(state)
         step = self._compiled_steps.get(state.rows.n_axes) or self._new_compiled_step(state)
         after = None if step is None else step(state, z, t, sigma)
         return self._one_step(state, z, t, sigma) if after is None else after
@@ -294,6 +292,8 @@ class LaneTracker(ABC):
         >>> round(float(prediction.innovation_variance), 1)
         590.2
         """
+        if not isinstance(state, TrackState):
+            raise _no_state(state)
         coasted = self.step(state, np.full(state.shape, np.nan), t, 1.0)
         variance = self._position_variance(state, coasted.time)
         if sigma is not None:
@@ -430,97 +430,21 @@ class LaneTracker(ABC):
         return plot_sigmas(sigma, plots, self.name if self.needs_sigma else None)
 
 
-# The cache is looked up by identity first, since comparing two rule bases takes longer than a step.
-@dataclass(frozen=True, eq=False)
-class _Identity:
-    tracker: LaneTracker
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Identity) and self.tracker is other.tracker
-
-    def __hash__(self) -> int:
-        return id(self.tracker)
-
-
-def runner(tracker: LaneTracker, n_axes: int) -> Runner:
-    """Runner of a tracker; equal trackers share one, and what was compiled for it.
-
-    Parameters
-    ----------
-    tracker : LaneTracker
-    n_axes : int
-        Axes of a lane: 1 unless the tracker is coupled.
-    """
-    return _runner_of_this(_Identity(tracker), n_axes)
-
-
-def announce(tracker: object, n_axes: int, coordinates: int) -> None:
-    """Announce a job in many parts to a tracker, so that it is compiled for the first of them.
-
-    Parameters
-    ----------
-    tracker : object
-        A tracker; nothing is done unless it is a `LaneTracker`.
-    n_axes : int
-        Axes of the plots.
-    coordinates : int
-        Number of coordinates in all.
-    """
-    if isinstance(tracker, LaneTracker):
-        core = runner(tracker, n_axes if tracker.coupled else 1)
-        core.horizon = max(core.horizon, core.work + coordinates)
-
-
-def learn_code(tracker: object, n_axes: int, code: SharedCode) -> None:
-    """Note the numbers of a tracker, before `sharing_code` compiles; arguments as there."""
-    if isinstance(tracker, LaneTracker):
-        program = runner(tracker, n_axes if tracker.coupled else 1).program
-        code.learn(program.step(BLOCK))
-        if program.steady is not None:
-            for common in (True, False):
-                code.learn(program.steady(BLOCK, False, common))
-
-
-@contextmanager
-def sharing_code(tracker: object, n_axes: int, code: SharedCode) -> Iterator[None]:
-    """Let a tracker run through code that it shares with trackers which differ in numbers only.
-
-    Parameters
-    ----------
-    tracker : object
-        A tracker; nothing is done unless it is a `LaneTracker`. It must not run elsewhere at the
-        same time.
-    n_axes : int
-        Axes of the plots.
-    code : SharedCode
-    """
-    if not isinstance(tracker, LaneTracker):
-        yield
-        return
-    with runner(tracker, n_axes if tracker.coupled else 1).compiled_by(code.entry_point):
-        yield
-
-
 def check_missed(missed: str) -> None:
     """Raise ValueError unless it is a word for `LaneTracker.missed`."""
     if missed not in MISSED:
         raise ValueError(f"missed: unknown {missed!r}; one of {', '.join(MISSED)}")
 
 
-@lru_cache(maxsize=256)
-def _runner_of_this(key: _Identity, n_axes: int) -> Runner:
-    return _runner_of_equal(key.tracker, n_axes)
-
-
-@lru_cache(maxsize=64)
-def _runner_of_equal(tracker: LaneTracker, n_axes: int) -> Runner:
-    return Runner(tracker.program(n_axes), tracker.missed == "elapsed")
+def _no_state(given: object) -> TypeError:
+    """Error about what was given in place of a state."""
+    return TypeError(f"state must be a TrackState, got {type(given).__name__}")
 
 
 def _time_of(state: TrackState | None) -> Array | np.float64 | None:
     """Time of a state (s); None for new tracks."""
     if not (state is None or isinstance(state, TrackState)):
-        raise TypeError(f"state must be a TrackState, got {type(state).__name__}")
+        raise _no_state(state)
     return None if state is None else state.time
 
 

@@ -16,7 +16,7 @@ from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.published import ALL_SETS, TRACK_SETS
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
-from fuzzytrack.trackers.lane_tracker import announce
+from fuzzytrack.trackers.compilation import announce
 from fuzzytrack.tuning.scored_plots import scored_plots, squared_errors
 from fuzzytrack.tuning.variants import VARIANTS
 from fuzzytrack.version import __version__

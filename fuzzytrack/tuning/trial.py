@@ -14,7 +14,7 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.lane_tracker import learn_code, sharing_code
+from fuzzytrack.trackers.compilation import learn_code, sharing_code
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import Criterion
 from fuzzytrack.tuning.data import TuningData

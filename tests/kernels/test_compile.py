@@ -141,7 +141,7 @@ import sys
 import numpy as np
 import fuzzytrack as ft
 from fuzzytrack.schedulers import KalmanCV
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 
 z = np.random.default_rng(3).normal(size=(9, 4, 1)).cumsum(axis=0)
 dts, sigmas = np.ones((9, 1)), np.full((1, 1, 1), 2.0)

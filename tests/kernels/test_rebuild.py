@@ -9,7 +9,7 @@ import pytest
 
 import fuzzytrack as ft
 from fuzzytrack.kernels.rebuild import fingerprint, rebuilt, rounded, table
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 
 SCALE = 2.0
 

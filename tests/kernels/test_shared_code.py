@@ -6,7 +6,8 @@ import pytest
 from fuzzytrack.kernels import shared_code
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lane_tracker import learn_code, runner, sharing_code
+from fuzzytrack.trackers.compilation import learn_code, sharing_code
+from fuzzytrack.trackers.runners import runner
 
 RNG = np.random.default_rng(4)
 TIMES = np.cumsum(RNG.uniform(0.5, 2.0, 40))

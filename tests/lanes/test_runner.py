@@ -2,7 +2,8 @@ import numpy as np
 
 import fuzzytrack as ft
 from fuzzytrack.lanes import runner as module
-from fuzzytrack.trackers.lane_tracker import announce, runner
+from fuzzytrack.trackers.compilation import announce
+from fuzzytrack.trackers.runners import runner
 
 
 def test_many_small_jobs_are_compiled_like_one_large_one(monkeypatch):

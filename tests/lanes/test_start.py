@@ -17,7 +17,8 @@ from fuzzytrack.lanes.start import (
     velocity_before,
 )
 from fuzzytrack.lanes.tuples import gather, scatter
-from fuzzytrack.trackers.lane_tracker import LaneTracker, announce
+from fuzzytrack.trackers.compilation import announce
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 NAN = math.nan
 

@@ -258,6 +258,14 @@ def test_the_acceleration_decays_until_the_next_prediction(missed):
     np.testing.assert_array_equal(tracker.run(times, batch).predicted[:, 7, 0], result.predicted)
 
 
+@pytest.mark.parametrize("state", [None, "state", 3.0])
+def test_a_step_needs_a_state(state):
+    with pytest.raises(TypeError, match="state must be a TrackState, got"):
+        ft.AlphaBetaTracker(FIXED).step(state, 1.0, 1.0)
+    with pytest.raises(TypeError, match="state must be a TrackState, got"):
+        ft.AlphaBetaTracker(FIXED).predict(state, 1.0)
+
+
 def test_without_retention_the_fourth_number_is_not_used():
     given = Leaky((2.0, np.inf, 0.5), uses_retention=False)
     result = ft.AlphaBetaTracker(given).run(range(5), [0.0, 1.0, 4.0, 9.0, 20.0])

@@ -14,7 +14,7 @@ from fuzzytrack.simulation.published import s3
 from fuzzytrack.simulation.scenario import PlotNoise
 from fuzzytrack.trackers.bank import SELECTIONS, ParallelBank
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 
 WHITE_NOISE = PlotNoise((15.0, 23.0), WHITE, clean=2)
 COLORED_NOISE = PlotNoise((19.0, 23.0), Noise(correlation=0.7), clean=2)

@@ -10,7 +10,7 @@ from fuzzytrack import AlphaBetaTracker
 from fuzzytrack.schedulers import KalmanCA, KalmanCV
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.imm import InteractingPair
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 
 # One whole-track tracker for all checks that need it compiled.
 JOINT = InteractingPair(0.2, 3.0, sigma_w=10.0)

@@ -12,7 +12,7 @@ import fuzzytrack as ft
 from fuzzytrack.lanes.layout import BLOCK, GAINS, OUTPUTS
 from fuzzytrack.schedulers import KalmanCA, KalmanCV, QualityGains
 from fuzzytrack.trackers import InteractingPair, ParallelBank
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 
 pytestmark = pytest.mark.untraced
 

@@ -13,8 +13,8 @@ from fuzzytrack.lanes.layout import BLOCK
 from fuzzytrack.schedulers import GainScheduler, InnovationScheduler, KalmanCA, KalmanCV
 from fuzzytrack.trackers import InteractingPair, ParallelBank, WindowSearch
 from fuzzytrack.trackers.covariance import track_covariance
-from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
+from fuzzytrack.trackers.runners import runner
 
 pytestmark = [
     pytest.mark.untraced,

@@ -17,8 +17,8 @@ from fuzzytrack.lanes import runner as module
 from fuzzytrack.lanes.block_loop import compiled_one_step, compiled_run
 from fuzzytrack.lanes.layout import BLOCK, aligned
 from fuzzytrack.schedulers import KalmanCV
-from fuzzytrack.trackers.lane_tracker import runner
 from fuzzytrack.trackers.result import KEPT
+from fuzzytrack.trackers.runners import runner
 
 pytestmark = pytest.mark.untraced
 

@@ -11,7 +11,7 @@ from fuzzytrack.simulation.noise import Noise, streams
 from fuzzytrack.simulation.published import s3
 from fuzzytrack.simulation.scenario import PlotNoise
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lane_tracker import runner
+from fuzzytrack.trackers.runners import runner
 from fuzzytrack.trackers.window_search import WindowSearch
 
 

@@ -23,7 +23,7 @@ from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.trackers.lane_tracker import announce
+from fuzzytrack.trackers.compilation import announce
 from fuzzytrack.trackers.state import Gains
 
 __all__ = [
