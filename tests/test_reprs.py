@@ -14,7 +14,8 @@ from fuzzytrack import normalizations, schedulers, trackers
 from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.saving import save_rulebase
 from fuzzytrack.gains.cost import TrackingCost
-from fuzzytrack.io.recording import Piece, Recording, Track
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.recording import Recording, Track
 from fuzzytrack.normalizations import Scale, Smoothed, SmoothedMagnitude
 from fuzzytrack.papers.llinas.columns import columns
 from fuzzytrack.papers.llinas.programs import Run

@@ -1,10 +1,11 @@
 """Files of plots and tracks: CSV, and Parquet with the extra ``parquet``."""
 
 from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.io.formats import check_table, read_table, table_writer, write_table
+from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.recording import (
-    Piece,
     Recording,
     Track,
     find_columns,
@@ -17,6 +18,7 @@ from fuzzytrack.io.table import Table, Words
 __all__ = [
     "Columns",
     "Piece",
+    "PlotDescription",
     "Recording",
     "Table",
     "Track",

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.formats import PARQUET, Source, open_table
+from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.table import Table, Words, no_rows, silent
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
@@ -33,66 +33,6 @@ __all__ = [
 
 #: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
 ROWS = 250_000
-
-
-@dataclass(frozen=True, eq=False)
-class Piece:
-    """Some rows of a recording: the plots of any tracks, those of one track in order of time.
-
-    Attributes
-    ----------
-    ids : Words
-        Identity of the track of each row, as text.
-    time : ndarray, shape (n_rows,)
-        Times (s).
-    plots : ndarray, shape (n_rows, n_axes)
-        Positions (m), NaN where missed.
-    rows : ndarray of int, shape (n_rows,)
-        Where the rows stand in the file, counted from 1.
-    file : str
-        Name of the file, for messages; empty if there is none.
-    """
-
-    ids: Words
-    time: Array
-    plots: Array
-    rows: NDArray[np.int64]
-    file: str = ""
-
-    def __repr__(self) -> str:
-        return summary(self, "file", "ids", "plots")
-
-    @classmethod
-    def of(cls, ids: ArrayLike, time: ArrayLike, plots: ArrayLike) -> Piece:
-        """Make a piece of arrays.
-
-        Parameters
-        ----------
-        ids : array_like, shape (n_rows,)
-            Identities, numbers or text.
-        time : array_like, shape (n_rows,)
-            Times (s).
-        plots : array_like, shape (n_rows, n_axes)
-            Positions (m), NaN where missed.
-
-        Raises
-        ------
-        ValueError
-            If the shapes do not fit.
-        """
-        marks, times = np.asarray(ids), np.asarray(time, dtype=np.float64)
-        positions = np.asarray(plots, dtype=np.float64)
-        if positions.ndim != 2 or not positions.shape[1]:
-            raise ValueError(f"plots: shape must be (n_rows, n_axes), got {positions.shape}")
-        for name, values in (("ids", marks), ("time", times)):
-            if values.shape != positions.shape[:1]:
-                raise ValueError(
-                    f"{name}: shape {values.shape} does not fit plots of shape {positions.shape}; "
-                    f"{positions.shape[:1]} does"
-                )
-        names, codes = np.unique(marks, return_inverse=True)
-        words = Words(tuple(map(str, names.tolist())), codes.astype(np.int64))
-        return cls(words, times, positions, np.arange(1, len(times) + 1))
 
 
 @dataclass(frozen=True, eq=False)

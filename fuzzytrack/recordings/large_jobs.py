@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, check_output_folder
 from fuzzytrack.io.formats import check_table
-from fuzzytrack.io.recording import ROWS, Piece, find_columns, read_pieces, recording_files
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
 from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces

@@ -11,7 +11,8 @@ import numpy as np
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_file
 from fuzzytrack.io.parquet import arrow_table, import_pyarrow, parquet_writer, words_of
-from fuzzytrack.io.recording import ROWS, Piece
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.recording import ROWS
 from fuzzytrack.io.table import Words
 
 __all__ = ["partition_of", "read_partition", "write_partitions"]

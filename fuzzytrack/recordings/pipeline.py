@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.recording import Piece
+from fuzzytrack.io.piece import Piece
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_writer import OUTPUTS, track_writer

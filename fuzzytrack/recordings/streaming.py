@@ -10,7 +10,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.recording import Piece
+from fuzzytrack.io.piece import Piece
 from fuzzytrack.lanes.layout import GAINS
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.catalog import as_lane_tracker
@@ -87,7 +87,7 @@ def run_iter(
     Examples
     --------
     >>> from fuzzytrack import AlphaBetaTracker, FixedGains
-    >>> from fuzzytrack.io.recording import Piece
+    >>> from fuzzytrack.io.piece import Piece
     >>> first = Piece.of(["a", "b", "a"], [0, 0, 1], [[0.0], [5.0], [10.0]])
     >>> second = Piece.of(["a", "a"], [2, 3], [[19.0], [31.0]])
     >>> tracker = AlphaBetaTracker(FixedGains(0.5, 0.2))

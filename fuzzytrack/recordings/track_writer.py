@@ -12,7 +12,8 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.formats import table_writer
-from fuzzytrack.io.recording import Piece, Recording
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.recording import Recording
 from fuzzytrack.io.table import Words
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.result import TrackResult

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
-from fuzzytrack.io.recording import Piece
+from fuzzytrack.io.piece import Piece
 from fuzzytrack.recordings.streaming import OpenTracks, run_iter
 from fuzzytrack.trackers.catalog import make_tracker
 

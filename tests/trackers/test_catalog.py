@@ -3,7 +3,7 @@ import pytest
 
 from fuzzytrack import AlphaBetaTracker, FixedGains, RuleBaseError, load_rulebase
 from fuzzytrack.fuzzy.saving import save_rulebase
-from fuzzytrack.io.recording import Piece
+from fuzzytrack.io.piece import Piece
 from fuzzytrack.recordings.ragged import run_tracks
 from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.schedulers import schedulers
