@@ -1,8 +1,8 @@
-"""Formats of files: their list, and tables read and written in any of them.
+"""Tables read and written, in the format that the name of the file says.
 
-A format is a module of this package that has the functions of `Format`. Another one, such as a
-reader of radar messages, is such a module and a line in ``_FORMATS``: recordings, their columns and
-their errors come from `fuzzytrack.io.recording`, which uses `Source` only.
+Files are read by the readers of `fuzzytrack.io.readers`; recordings, their columns and their errors
+come from `fuzzytrack.io.recording`, which uses `Source` only. A format in which tables are written
+is a module that has the functions of `Format`, and a line in ``_FORMATS``.
 """
 
 from __future__ import annotations
@@ -19,13 +19,16 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io import csv, parquet
 from fuzzytrack.io.files import PathLike, check_output, whole_file
+from fuzzytrack.io.readers import Reader, make_reader, reader_of, readers
+from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Kind, Table, Values, no_rows, silent
 from fuzzytrack.tasks import Progress
 
 __all__ = [
     "PARQUET",
+    "CsvReader",
     "Format",
-    "Source",
+    "ParquetReader",
     "check_table",
     "open_table",
     "read_table",
@@ -34,51 +37,15 @@ __all__ = [
 ]
 
 
-class Source(Protocol):
-    """An open file of plots."""
-
-    @property
-    def file(self) -> str:
-        """Name of the file, for messages."""
-
-    @property
-    def types(self) -> Mapping[str, str]:
-        """Names of the columns, and the format's names for their types."""
-
-    def tables(
-        self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
-    ) -> Iterator[Table]:
-        """Read columns.
-
-        Parameters
-        ----------
-        kinds : mapping of str to Kind
-            The columns, and what each must hold.
-        rows : int or None
-            Rows of a table, at most; without it the whole file is one table.
-        progress : callable
-            Called with the share of the file that has been read.
-
-        Yields
-        ------
-        Table
-            At least one row; no table of a file without rows.
-
-        Raises
-        ------
-        DataError
-            If a cell does not hold what it must; names row, column and value.
-        """
+#: Suffixes of Parquet files.
+PARQUET = (".parquet", ".pq")
 
 
 class Format(Protocol):
-    """What a module of this package offers for a format of files."""
+    """What a module of this package offers for a format in which tables are written."""
 
     def check(self, file: str, /) -> None:
         """Raise a DataError if what the format needs is not installed."""
-
-    def open_source(self, file: str, /) -> AbstractContextManager[Source]:
-        """Open a file that is read; any error in it, now or later, is a DataError."""
 
     def open_target(
         self, draft: Path, types: Mapping[str, str], compact: bool, progress: Progress, /
@@ -86,34 +53,57 @@ class Format(Protocol):
         """Open a file that is written; the arguments are those of `table_writer`."""
 
 
-#: Suffixes of Parquet files.
-PARQUET = (".parquet", ".pq")
+@readers.register("csv")
+class CsvReader(Reader):
+    """Reads CSV."""
 
-# Formats by the suffixes of the files that are written in them. What has another suffix is read as
-# CSV.
+    suffixes = (".csv",)
+
+    def open_source(self, file: str) -> AbstractContextManager[Source]:
+        """Open a file; see `fuzzytrack.io.csv`."""
+        return csv.open_source(file)
+
+
+@readers.register("parquet")
+class ParquetReader(Reader):
+    """Reads Parquet, with the extra ``parquet``."""
+
+    suffixes = PARQUET
+
+    def check(self, file: str) -> None:
+        """Check that pyarrow is installed."""
+        parquet.check(file)
+
+    def open_source(self, file: str) -> AbstractContextManager[Source]:
+        """Open a file; see `fuzzytrack.io.parquet`."""
+        return parquet.open_source(file)
+
+
+# Formats by the suffixes of the files that are written in them.
 _FORMATS: dict[tuple[str, ...], Format] = {PARQUET: parquet, (".csv", ".txt"): csv}
 
 
-def open_table(file: str) -> AbstractContextManager[Source]:
-    """Open a file that is read, in the format that its name says.
+def open_table(file: str, format: str | None = None) -> AbstractContextManager[Source]:
+    """Open a file that is read.
 
     Parameters
     ----------
     file : str
-        Parquet if it ends in ``.parquet`` or ``.pq``, otherwise CSV: UTF-8, separated by commas,
-        names in the first row.
+        Its name says its format, unless `format` is given; what no reader knows is CSV.
+    format : str, optional
+        Name of the format, as in `readers`, maybe with parameters: ``asterix:category=62``.
 
     Raises
     ------
+    ValueError
+        If there is no such format; lists those that there are.
     DataError
         If the file is no such table, also later, while it is read.
     OSError
         If it cannot be read.
     """
-    for suffixes, found in _FORMATS.items():
-        if file.lower().endswith(suffixes):
-            return found.open_source(file)
-    return csv.open_source(file)
+    reader = make_reader(format) if format is not None else reader_of(file) or CsvReader()
+    return reader.open_source(file)
 
 
 def _format_of_output(path: PathLike) -> Format:

@@ -13,8 +13,9 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.formats import PARQUET, Source, open_table
+from fuzzytrack.io.formats import PARQUET, open_table
 from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Table, Words, no_rows, silent
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
