@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.table import Column, Kind, Table, Values, checked_names, silent
+from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
 
@@ -32,7 +33,7 @@ def check(file: str) -> None:
 
 
 @contextmanager
-def open_source(file: str) -> Iterator[CsvSource]:
+def open_source(file: str, form: TextForm = PLAIN) -> Iterator[CsvSource]:
     """Open a CSV file: UTF-8, separated by commas, names in the first row.
 
     Raises
@@ -45,7 +46,7 @@ def open_source(file: str) -> Iterator[CsvSource]:
     with open(file, encoding="utf-8-sig", newline="") as stream:
         reader = csv.reader(stream, strict=True)
         try:
-            yield CsvSource(file, stream, reader)
+            yield CsvSource(file, stream, reader, form)
         except UnicodeDecodeError:
             raise _not_utf8(file) from None
         except csv.Error as error:
@@ -55,8 +56,10 @@ def open_source(file: str) -> Iterator[CsvSource]:
 class CsvSource:
     """An open CSV file; see `fuzzytrack.io.formats.Source`."""
 
-    def __init__(self, file: str, stream: IO[str], reader: Any) -> None:
-        self.file = file
+    def __init__(self, file: str, stream: IO[str], reader: Any, form: TextForm) -> None:
+        self.file, self.form = file, form
+        self.units: dict[str, str] = {}
+        self.notes: list[str] = []
         # Several columns may have no name.
         self._names = _header(reader, file)
         self.types = dict.fromkeys(self._names, "text")
@@ -80,7 +83,9 @@ class CsvSource:
                     yield Table.of(self.file, columns, np.concatenate(found))
                     found, waiting = [], 0
                 if not found:
-                    columns = [Column(self.file, name, kind) for name, kind in kinds.items()]
+                    columns = [
+                        Column(self.file, name, kind, self.form) for name, kind in kinds.items()
+                    ]
                 for column, place in zip(columns, places, strict=True):
                     column.take_cells(cells[place][start : start + step], part)
                 found.append(np.array(part))

@@ -22,6 +22,7 @@ from fuzzytrack.io.files import PathLike, check_output, whole_file
 from fuzzytrack.io.readers import Reader, make_reader, reader_of, readers
 from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Kind, Table, Values, no_rows, silent
+from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.tasks import Progress
 
 __all__ = [
@@ -61,7 +62,7 @@ class CsvReader(Reader):
 
     def open_source(self, file: str) -> AbstractContextManager[Source]:
         """Open a file; see `fuzzytrack.io.csv`."""
-        return csv.open_source(file)
+        return csv.open_source(file, self.form)
 
 
 @readers.register("parquet")
@@ -76,20 +77,25 @@ class ParquetReader(Reader):
 
     def open_source(self, file: str) -> AbstractContextManager[Source]:
         """Open a file; see `fuzzytrack.io.parquet`."""
-        return parquet.open_source(file)
+        return parquet.open_source(file, self.form)
 
 
 # Formats by the suffixes of the files that are written in them.
 _FORMATS: dict[tuple[str, ...], Format] = {PARQUET: parquet, (".csv", ".txt"): csv}
 
 
-def open_table(file: str, format: str | None = None) -> AbstractContextManager[Source]:
+def open_table(
+    file: str, form: TextForm | None = None, *, format: str | None = None
+) -> AbstractContextManager[Source]:
     """Open a file that is read.
 
     Parameters
     ----------
     file : str
-        Its name says its format, unless `format` is given; what no reader knows is CSV.
+        Its name says its format, unless `format` is given; what no reader knows is CSV, and so is
+        text to whose columns `form` gives names.
+    form : TextForm, optional
+        How cells, numbers and missing numbers of text are written; recognized unless given.
     format : str, optional
         Name of the format, as in `readers`, maybe with parameters: ``asterix:category=62``.
 
@@ -102,7 +108,11 @@ def open_table(file: str, format: str | None = None) -> AbstractContextManager[S
     OSError
         If it cannot be read.
     """
+    form = form or PLAIN
     reader = make_reader(format) if format is not None else reader_of(file) or CsvReader()
+    if format is None and form.columns is not None and not isinstance(reader, ParquetReader):
+        reader = CsvReader()
+    reader.form = form
     return reader.open_source(file)
 
 

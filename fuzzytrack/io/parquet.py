@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.table import Column, Kind, Table, Values, Words, checked_names, silent
+from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.tasks import Progress
 
 __all__ = [
@@ -51,8 +52,15 @@ def import_pyarrow(file: str) -> Any:
 
 
 @contextmanager
-def open_source(file: str) -> Iterator[ParquetSource]:
+def open_source(file: str, form: TextForm = PLAIN) -> Iterator[ParquetSource]:
     """Open a Parquet file.
+
+    Parameters
+    ----------
+    file : str
+        The file.
+    form : TextForm, optional
+        Only what stands for a missing number is used.
 
     Raises
     ------
@@ -62,10 +70,12 @@ def open_source(file: str) -> Iterator[ParquetSource]:
         If it cannot be opened.
     """
     arrow = import_pyarrow(file)
+    if form.columns is not None:
+        raise DataError(f"{file}: `columns`: a Parquet file has names of its own; leave them out")
     with open(file, "rb") as stream:
         try:
             source = arrow.parquet.ParquetFile(stream, buffer_size=_BUFFER, pre_buffer=False)
-            yield ParquetSource(file, source)
+            yield ParquetSource(file, source, form)
         # pyarrow reports a page that is broken as an OSError.
         except (arrow.ArrowException, OSError) as error:
             raise DataError(f"{file}: is not a Parquet file that can be read: {error}") from None
@@ -74,8 +84,8 @@ def open_source(file: str) -> Iterator[ParquetSource]:
 class ParquetSource:
     """An open Parquet file; see `fuzzytrack.io.formats.Source`."""
 
-    def __init__(self, file: str, source: Any) -> None:
-        self.file = file
+    def __init__(self, file: str, source: Any, form: TextForm = PLAIN) -> None:
+        self.file, self.form = file, form
         schema = source.schema_arrow
         self.types = dict(
             zip(checked_names(schema.names, file), map(str, schema.types), strict=True)
@@ -93,7 +103,7 @@ class ParquetSource:
             if not part.num_rows:
                 continue
             numbers = np.arange(done + 1, done + part.num_rows + 1)
-            columns = [Column(self.file, name, kind) for name, kind in kinds.items()]
+            columns = [Column(self.file, name, kind, self.form) for name, kind in kinds.items()]
             for column in columns:
                 _take(arrow, column, part.column(column.name), numbers)
             yield Table.of(self.file, columns, numbers)
@@ -112,11 +122,30 @@ def _take(arrow: Any, column: Column, values: Any, rows: NDArray[np.int64]) -> N
     """Add what pyarrow has read to a column."""
     if column.kind == "word":
         column.take_words(*_names_and_codes(arrow, values), rows)
-    elif _is_number(arrow, values.type):
+    elif column.kind == "time" and (times := _times(arrow, values)) is not None:
+        column.take_times(times, rows)
+    elif column.kind not in ("time", "text") and _is_number(arrow, values.type):
         column.take_numbers(values.to_numpy().astype(np.float64), rows)
     else:
         cells = ["" if value is None else str(value) for value in values.to_pylist()]
         column.take_cells(cells, rows.tolist())
+
+
+def _times(arrow: Any, values: Any) -> NDArray[Any] | None:
+    """Times as int64, float64 or datetime64, NaN where there is none; None if they are text."""
+    kind, types = values.type, arrow.types
+    if types.is_date(kind):
+        values = values.cast(arrow.timestamp("s" if types.is_date32(kind) else "ms"))
+    elif types.is_duration(kind):
+        seconds = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[kind.unit]
+        return np.asarray(values.cast(arrow.int64()).to_numpy(), dtype=np.float64) / seconds
+    elif types.is_integer(kind) and not values.null_count:
+        values = values.cast(arrow.int64())
+    elif types.is_integer(kind) or types.is_floating(kind):
+        return np.asarray(values.to_numpy(), dtype=np.float64)
+    elif not types.is_timestamp(kind):
+        return None
+    return np.asarray(values.to_numpy())
 
 
 def _is_number(arrow: Any, kind: Any) -> bool:

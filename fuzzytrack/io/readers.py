@@ -11,6 +11,7 @@ from typing import ClassVar
 from fuzzytrack import specs
 from fuzzytrack.errors import PluginWarning
 from fuzzytrack.io.source import Source
+from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.plugins import Registry
 from fuzzytrack.yamltree import suggestion
 
@@ -27,9 +28,12 @@ class Reader(ABC):
     ----------
     suffixes : tuple of str
         Ends of the names of files in this format, in lower case: ``(".gpx",)``.
+    form : TextForm
+        How text is written, as far as the user says so; for readers of text.
     """
 
     suffixes: ClassVar[tuple[str, ...]] = ()
+    form: TextForm = PLAIN
 
     def reads(self, file: str) -> bool:
         """Whether a file is in this format, as far as its name says so."""

@@ -15,8 +15,9 @@ class Source(Protocol):
     """An open file of plots.
 
     A source may also have ``description``, a `PlotDescription` of what its format says of the
-    columns, and ``notes``, a list of texts that grows while the file is read: what was left out of
-    it, and why.
+    columns; ``units``, a mapping of names of columns to units that the file gives apart from the
+    names, as in a row of units; and ``notes``, a list of texts that grows while the file is read:
+    what was left out of it, and why.
     """
 
     @property

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -16,19 +17,35 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.reprs import summary
 
-__all__ = ["Column", "Kind", "Table", "Values", "Words", "checked_names", "no_rows", "silent"]
+__all__ = [
+    "Cells",
+    "Column",
+    "Kind",
+    "Table",
+    "Values",
+    "Words",
+    "checked_names",
+    "no_rows",
+    "silent",
+]
 
-#: What a column that is read must hold: a number in every row, numbers and gaps, or words.
-Kind = Literal["number", "gaps", "word"]
+#: What a column that is read must hold: a number in every row; numbers and gaps; words; times as
+#: they are written, none missing; any text.
+Kind = Literal["number", "gaps", "word", "time", "text"]
 
-# What stands for a missing number, in lower case.
-_GAPS = ("", "nan", "na")
+#: Cells as they were read: text, or from files that have types an array of int64, float64 or
+#: datetime64.
+Cells = Sequence[str] | NDArray[Any]
+
 _EXPECTED = {
     "number": "a finite number",
     "gaps": "a finite number, or an empty cell or nan for a missed plot",
     "word": "some text",
+    "time": "a time",
+    "text": "text",
 }
 
 
@@ -88,26 +105,32 @@ class Table:
         Columns of numbers, NaN in the gaps.
     words : dict of Words
         Columns of words.
+    cells : dict of (sequence of str or ndarray)
+        Columns of times and of any text, as they were read: text without blanks around it, or in
+        files that have types an array of int64, float64 or datetime64.
     """
 
     file: str
     rows: NDArray[np.int64]
     numbers: dict[str, Array]
     words: dict[str, Words]
+    cells: dict[str, Cells] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        return summary(self, "file", "numbers", "words", rows=len(self.rows))
+        return summary(self, "file", "numbers", "words", "cells", rows=len(self.rows))
 
     @classmethod
     def of(cls, file: str, columns: Sequence[Column], rows: NDArray[np.int64]) -> Table:
         """Table of columns that have been read."""
-        numbers, words = {}, {}
+        numbers, words, cells = {}, {}, {}
         for column in columns:
             if column.kind == "word":
                 words[column.name] = column.words()
+            elif column.kind in ("time", "text"):
+                cells[column.name] = column.cells()
             else:
                 numbers[column.name] = column.numbers()
-        return cls(file, rows, numbers, words)
+        return cls(file, rows, numbers, words, cells)
 
 
 class Column:
@@ -117,13 +140,15 @@ class Column:
     ----------
     file, name : str
         File and column, for messages.
-    kind : {"number", "gaps", "word"}
+    kind : {"number", "gaps", "word", "time", "text"}
         What its cells must hold.
+    form : TextForm, optional
+        What stands for a missing number.
     """
 
-    def __init__(self, file: str, name: str, kind: Kind) -> None:
-        self.file, self.name, self.kind = file, name, kind
-        self._parts: list[NDArray[Any]] = []
+    def __init__(self, file: str, name: str, kind: Kind, form: TextForm = PLAIN) -> None:
+        self.file, self.name, self.kind, self.form = file, name, kind, form
+        self._parts: list[Any] = []
         self._codes: dict[str, int] = {}
 
     def numbers(self) -> Array:
@@ -135,6 +160,12 @@ class Column:
         codes = np.concatenate(self._parts) if self._parts else np.empty(0)
         return Words(tuple(self._codes), codes.astype(np.int64))
 
+    def cells(self) -> Cells:
+        """All cells read so far, as they were."""
+        if all(isinstance(part, np.ndarray) for part in self._parts):
+            return self.numbers()
+        return list(chain.from_iterable(self._parts))
+
     def take_cells(self, cells: Sequence[str], rows: Sequence[int]) -> None:
         """Add cells of text.
 
@@ -143,10 +174,13 @@ class Column:
         DataError
             If one does not hold what it must; names its row.
         """
-        if self.kind == "word":
+        if self.kind in ("word", "time", "text"):
             words = list(map(str.strip, cells))
-            if not all(words):
+            if self.kind != "text" and not all(words):
                 raise self.error(rows[words.index("")], "")
+            if self.kind != "word":
+                self._parts.append(words)
+                return
             codes = self._codes
             self._parts.append(np.array([codes.setdefault(word, len(codes)) for word in words]))
             return
@@ -155,9 +189,12 @@ class Column:
     def take_numbers(self, values: Array, rows: NDArray[np.int64]) -> None:
         """Add cells of numbers, NaN in the gaps; raises as `take_cells`."""
         bad = np.isinf(values) if self.kind == "gaps" else ~np.isfinite(values)
-        if bad.any():
-            place = int(np.argmax(bad))
-            raise self.error(int(rows[place]), str(values[place]))
+        self._refuse(bad, values, rows)
+        self._parts.append(self._with_gaps(values))
+
+    def take_times(self, values: NDArray[Any], rows: NDArray[np.int64]) -> None:
+        """Add times of int64, float64 or datetime64; raises as `take_cells`."""
+        self._refuse(~np.isfinite(values), values, rows)
         self._parts.append(values)
 
     def take_words(
@@ -176,7 +213,24 @@ class Column:
         position = np.array([known.setdefault(word, len(known)) for word in words], dtype=np.int64)
         self._parts.append(position[codes])
 
+    def _refuse(
+        self, bad: NDArray[np.bool_], values: NDArray[Any], rows: NDArray[np.int64]
+    ) -> None:
+        if bad.any():
+            place = int(np.argmax(bad))
+            raise self.error(int(rows[place]), str(values[place]))
+
+    def _with_gaps(self, values: Array) -> Array:
+        """Numbers, NaN for those that stand for none."""
+        codes = self.form.missing_numbers
+        if codes and self.kind == "gaps":
+            return np.where(np.isin(values, codes), math.nan, values)
+        return values
+
     def _numbers(self, cells: Sequence[str], rows: Sequence[int]) -> Array:
+        return self._with_gaps(self._plain_numbers(cells, rows))
+
+    def _plain_numbers(self, cells: Sequence[str], rows: Sequence[int]) -> Array:
         plain = "".join(cells)
         # Python would also take 1_000 and digits of other scripts.
         if plain.isascii() and "_" not in plain:
@@ -191,7 +245,7 @@ class Column:
 
     def _number(self, cell: str, row: int) -> float:
         text = cell.strip()
-        if self.kind == "gaps" and text.lower() in _GAPS:
+        if self.kind == "gaps" and text.lower() in self.form.missing:
             return math.nan
         if text.isascii() and "_" not in text:
             try:

@@ -8,6 +8,8 @@ from data_files import XY, written
 
 from fuzzytrack import DataError
 from fuzzytrack.io import csv, find_columns, read_pieces, read_tracks
+from fuzzytrack.io.formats import open_table
+from fuzzytrack.io.text_form import TextForm
 
 BAD = {
     "text": ("t,x\n0,0\n1,abc\n", r"row 3, column x: 'abc'; expected a finite number, or"),
@@ -86,3 +88,23 @@ def test_long_files_come_in_pieces(tmp_path, monkeypatch):
     np.testing.assert_array_equal(track.plots[:, 0], [0, 1, math.nan, 3])
     assert shares
     assert 0 < shares[0] <= shares[-1] <= 1
+
+
+def test_times_and_text_are_kept_as_they_were_read(tmp_path):
+    path = written(tmp_path, "t,x,note\n 0:01 ,1,a b\n0:02,2,\n")
+    with open_table(str(path)) as source:
+        (table,) = source.tables({"t": "time", "note": "text"}, None)
+    assert table.cells == {"t": ["0:01", "0:02"], "note": ["a b", ""]}
+    path = written(tmp_path, "t,x\n0,1\n ,2\n")
+    with (
+        open_table(str(path)) as source,
+        pytest.raises(DataError, match="row 3, column t: an empty cell; expected a time"),
+    ):
+        list(source.tables({"t": "time"}, None))
+
+
+def test_numbers_that_stand_for_none_are_given(tmp_path):
+    path = written(tmp_path, "t,x\n0,-99.0\n1,x\n2,null\n3,4\n")
+    with open_table(str(path), TextForm(na=("-99", "X"))) as source:
+        (table,) = source.tables({"t": "number", "x": "gaps"}, None)
+    np.testing.assert_array_equal(table.numbers["x"], [math.nan, math.nan, math.nan, 4])

@@ -10,6 +10,8 @@ from data_files import XY, parquet, written
 
 from fuzzytrack import DataError
 from fuzzytrack.io import Columns, find_columns, read_pieces, read_tracks
+from fuzzytrack.io.formats import open_table
+from fuzzytrack.io.text_form import TextForm
 
 
 def test_parquet(tmp_path):
@@ -141,3 +143,51 @@ def test_a_whole_file_is_one_piece(tmp_path, row_group_size):
     assert piece.ids.names == ("b", "a", "c")
     assert list(piece.ids) == ids.to_pylist()
     np.testing.assert_array_equal(piece.rows, [1, 2, 3, 4, 5])
+
+
+def test_times_and_text_keep_the_types_of_the_file(tmp_path):
+    stamps = np.array(["2024-01-01T00:00:00.000000001", "2024-01-01"], dtype="datetime64[ns]")
+    columns = {
+        "whole": pa.array([1, 2]),
+        "fraction": pa.array([0.5, 1.5]),
+        "stamp": pa.array(stamps),
+        "zoned": pa.array(stamps).cast(pa.timestamp("ns", "Europe/Berlin")),
+        "day": pa.array(stamps.astype("datetime64[D]")),
+        "span": pa.array([1500, 2500], pa.duration("ms")),
+        "text": pa.array([" 0:01", "0:02"]),
+        "clock": pa.array([1_000, 2_500], pa.time32("ms")),
+    }
+    pq.write_table(pa.table({**columns, "note": ["a", None]}), tmp_path / "f.pq")
+    with open_table(str(tmp_path / "f.pq")) as source:
+        (table,) = source.tables({**dict.fromkeys(columns, "time"), "note": "text"}, None)
+    cells = table.cells
+    assert cells["whole"].dtype == np.int64
+    np.testing.assert_array_equal(cells["fraction"], [0.5, 1.5])
+    np.testing.assert_array_equal(cells["stamp"], stamps)
+    np.testing.assert_array_equal(cells["zoned"], stamps)
+    assert cells["day"].dtype.kind == "M"
+    np.testing.assert_array_equal(cells["span"], [1.5, 2.5])
+    assert cells["text"] == ["0:01", "0:02"]
+    assert cells["clock"] == ["00:00:01", "00:00:02.500000"]
+    assert cells["note"] == ["a", ""]
+
+
+@pytest.mark.parametrize(
+    "values", [[1, None], [0.5, None], [np.datetime64(1, "s"), None], ["a", ""]]
+)
+def test_no_time_is_missing(tmp_path, values):
+    pq.write_table(pa.table({"t": pa.array(values)}), tmp_path / "f.pq")
+    with (
+        open_table(str(tmp_path / "f.pq")) as source,
+        pytest.raises(DataError, match=r"row 2, column t: .*; expected a time"),
+    ):
+        list(source.tables({"t": "time"}, None))
+
+
+def test_names_of_columns_are_those_of_the_file(tmp_path):
+    pq.write_table(pa.table({"t": [1]}), tmp_path / "f.pq")
+    with (
+        pytest.raises(DataError, match="`columns`: a Parquet file has names"),
+        open_table(str(tmp_path / "f.pq"), TextForm(columns=("a",))),
+    ):
+        pass
