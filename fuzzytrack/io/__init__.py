@@ -4,6 +4,7 @@ from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.io.formats import check_table, read_table, table_writer, write_table
+from fuzzytrack.io.geo_track import GeoTrack
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.recording import (
     Recording,
@@ -14,9 +15,11 @@ from fuzzytrack.io.recording import (
     recording_files,
 )
 from fuzzytrack.io.table import Table, Words
+from fuzzytrack.io.track_formats import write_geo_tracks
 
 __all__ = [
     "Columns",
+    "GeoTrack",
     "Piece",
     "PlotDescription",
     "Recording",
@@ -32,5 +35,6 @@ __all__ = [
     "recording_files",
     "table_writer",
     "whole_file",
+    "write_geo_tracks",
     "write_table",
 ]
