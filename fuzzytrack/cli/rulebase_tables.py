@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
+
+import numpy as np
 
 from fuzzytrack.cli.output import print_table, say, show
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
@@ -102,7 +105,9 @@ def print_explanation(system: FuzzySystem, found: dict[str, Any]) -> None:
     if rows:
         print_table(["rule", "strength", "text"], rows, words=3)
     else:
-        say("no rule fires here")
+        point = np.array([found["at"][name] for name in system.rules.input_names])
+        lost = any(system.underflows(name, point) for name in system.rules.output_names)
+        say("the strengths of all rules underflow to 0 here" if lost else "no rule fires here")
     say()
     for name, value in {**found["outputs"], **found["gains"]}.items():
         unit = system.rules.output(name).unit if name in found["outputs"] else ""
@@ -119,15 +124,32 @@ def review_lines(review: Review) -> Iterator[tuple[str, str]]:
     if review.written:
         written = f"; {review.written[0]} of {review.written[1]} combinations of sets have one"
     yield "rules", f"{len(rules.rules)}{written}"
-    silent = f"no rule fires on {review.silent:.1%} of the inputs"
-    yield "coverage", silent if review.silent else "a rule fires everywhere"
+    yield from _coverage(review)
     for name, (low, high) in review.ranges.items():
         yield f"{name} reaches", f"{show(low)} to {show(high)}"
     yield "signs", review.symmetry
     if review.table_bounds:
-        bounds = (f"{name} {show(bound, 2)}" for name, bound in review.table_bounds.items())
-        yield "table error", f"at most {', '.join(bounds)} (method table)"
+        bounds = ", ".join(
+            f"{name} jumps to NaN" if math.isinf(bound) else f"{name} at most {show(bound, 2)}"
+            for name, bound in review.table_bounds.items()
+        )
+        yield "table error", f"{bounds} (method table)"
     yield "tracker", review.schedules or "schedules no gains"
+
+
+def _coverage(review: Review) -> Iterator[tuple[str, str]]:
+    if not review.silent and not review.holes:
+        yield "coverage", "a rule fires everywhere"
+    if review.silent:
+        share = f"{review.silent:.1%}" if review.silent >= 0.001 else "< 0.1 %"
+        yield "coverage", f"no rule fires on {share} of the inputs"
+    for hole in review.holes:
+        if not hole.stretches:
+            yield "coverage", f"{hole.output}: too many rules to find where none fires"
+            continue
+        default = review.rules.output(hole.output).default
+        value = "NaN; add a rule, or give it a default" if default is None else f"{default:g}"
+        yield "coverage", f"{hole}; it is then {value}"
 
 
 def _variable(variable: Variable) -> str:

@@ -17,7 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.reprs import summary
 
-__all__ = ["SHAPES", "FuzzySet", "Shape"]
+__all__ = ["SHAPES", "TAILED", "FuzzySet", "Shape"]
+
+#: Shapes that are above zero everywhere, and far from their core too small for a float.
+TAILED = ("gaussmf", "gauss2mf", "gbellmf", "sigmf")
 
 Parameters = tuple[float, ...]
 

@@ -7,10 +7,11 @@ import math
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from fuzzytrack.errors import Word
 from fuzzytrack.fuzzy.cells import CellReader
-from fuzzytrack.fuzzy.membership import SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import SHAPES, TAILED, FuzzySet
 from fuzzytrack.fuzzy.rulebase import (
     CONJUNCTIONS,
     DEFUZZIFICATIONS,
@@ -165,16 +166,19 @@ class Reader:
         fields = document.fields(node, f"{role} {name}", ("universe", "sets"), optional)
         universe = self._universe(fields["universe"])
         sets = self._sets(fields["sets"], name, universe)
-        default = fields.get("default")
         with document.at(fields["sets"]):
-            return Variable(
+            variable = Variable(
                 name,
                 universe,
                 tuple(sets),
-                None if default is None else document.number(default, "default"),
-                document.text(fields["label"], "label") if "label" in fields else "",
-                document.text(fields["unit"], "unit") if "unit" in fields else "",
+                label=document.text(fields["label"], "label") if "label" in fields else "",
+                unit=document.text(fields["unit"], "unit") if "unit" in fields else "",
             )
+        if "default" not in fields:
+            return variable
+        default = document.number(fields["default"], "default")
+        with document.at(fields["default"]):
+            return replace(variable, default=default)
 
     def _universe(self, node: Node) -> Universe:
         document = self.document
@@ -279,10 +283,13 @@ class Reader:
                     continue
                 used = {term for term in terms if term is not None}
                 for low, high in variable.uncovered(used):
+                    shapes = {s.shape for s in variable.sets if s.name in used}
+                    lost = " (its sets are so narrow that their grades underflow to 0)"
                     raise self.document.error(
                         entries[variable.name][0],
                         f"no rule about {output.name} can fire for {variable.name} "
-                        f"{_stretch(low, high)}; cover it, or give {output.name} a default",
+                        f"{_stretch(low, high)}{lost if shapes <= set(TAILED) else ''}; "
+                        f"cover it, or give {output.name} a default",
                     )
 
     # ---------------------------------------------------------------- rules

@@ -129,7 +129,9 @@ def _variable(output: bool = False) -> Schema:
         },
     }
     if output:
-        properties["default"] = _number("Value where no rule fires; NaN and a warning without it.")
+        properties["default"] = _number(
+            "Value where no rule fires, within the universe; NaN and a warning without it."
+        )
     return _closed("A linguistic variable.", properties, ("universe", "sets"))
 
 

@@ -210,8 +210,11 @@ class FuzzySystem:
             if len(rows):
                 where = _place(self.rules.input_names, points[rows[0]])
                 more = f" and at {len(rows) - 1} more points" if len(rows) > 1 else ""
+                what = f"no rule about {name} fires at {where}"
+                if self.underflows(name, points[rows[0]]):
+                    what = f"the strengths of all rules about {name} underflow to 0 at {where}"
                 warnings.warn(
-                    f"{self.rules.name}: no rule about {name} fires at {where}{more}: NaN; "
+                    f"{self.rules.name}: {what}{more}: NaN; "
                     "add a rule, or give the output a default",
                     NoRuleFiresWarning,
                     stacklevel=3,
@@ -276,6 +279,34 @@ class FuzzySystem:
             grades[variable.name] = disjoin(self.rules.operators, met, -1)
             whole[variable.name] = disjoin(self.rules.operators, spread, -1)
         return strengths(self.rules, grades, whole)
+
+    def underflows(self, output: str, point: Array) -> bool:
+        """Whether rules about an output have strengths above 0 at a point that are lost in floats.
+
+        Parameters
+        ----------
+        output : str
+            Name of the output.
+        point : ndarray, shape (n_inputs,)
+            No NaN.
+        """
+        about = {
+            rule.conditions
+            for rule in self.rules.rules
+            for c in rule.consequents
+            if c.output == output and c.confidence > 0
+        }
+        value = dict(zip(self.rules.input_names, point.tolist(), strict=True))
+        strength = self.strengths(point[None])[0]
+        silent = all(
+            s == 0.0
+            for s, rule in zip(strength, self.rules.rules, strict=True)
+            if rule.conditions in about
+        )
+        return silent and any(
+            all(self.rules.input(name).is_within(term, value[name]) for name, term in conditions)
+            for conditions in about
+        )
 
     def explain(self, /, **inputs: float) -> list[FiredRule]:
         """Rules that fire at a point, strongest first.

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import RuleBaseError
-from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.membership import TAILED, FuzzySet
 from fuzzytrack.reprs import summary
 
 __all__ = ["GRIDS", "Universe", "Variable"]
@@ -111,14 +111,15 @@ class Variable:
     sets : tuple of FuzzySet
         At least one, with distinct names.
     default : float or None
-        For an output, the value where no rule fires; None gives NaN and a warning.
+        For an output, the value where no rule fires, within the universe; None gives NaN and a
+        warning.
     label, unit : str
         For axes and tables.
 
     Raises
     ------
     RuleBaseError
-        If there is no set, or two sets share a name.
+        If there is no set, two sets share a name, or the default lies outside of the universe.
     """
 
     name: str
@@ -141,6 +142,13 @@ class Variable:
             doubled = min(n for n, k in Counter(names).items() if k > 1)
             raise RuleBaseError(f"variable {self.name!r}: two sets of one name: {doubled!r}")
         object.__setattr__(self, "_index", {n: i for i, n in enumerate(names)})
+        if self.default is not None:
+            object.__setattr__(self, "default", float(self.default))
+            if not self.universe.low <= self.default <= self.universe.high:
+                raise RuleBaseError(
+                    f"default of {self.name} must be within its universe, "
+                    f"[{self.universe.low:g}, {self.universe.high:g}], got {self.default:g}"
+                )
 
     @property
     def set_names(self) -> tuple[str, ...]:
@@ -191,6 +199,15 @@ class Variable:
                 end, end_covered = high, with_high
         if end < self.universe.high or (end == self.universe.high and not end_covered):
             yield end, self.universe.high
+
+    def is_within(self, set_name: str, x: float) -> bool:
+        """Whether a set is above zero at `x`, or would be if floats were smaller."""
+        fuzzy_set = self.sets[self.index(set_name)]
+        low, high, with_low, with_high = fuzzy_set.support()
+        if fuzzy_set.shape in TAILED:
+            return True
+        x = min(max(x, self.universe.low), self.universe.high)
+        return low < x < high or (x == low and with_low) or (x == high and with_high)
 
     def memberships(self, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Grades of every set, shape ``(n_sets, *x.shape)``; on the universe's grid without `x`."""

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.coverage import find_hole
 from fuzzytrack.fuzzy.kernel import infer_function
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.ramps import find_ramps
@@ -26,6 +27,8 @@ from fuzzytrack.schedulers.maneuver_covariance import AXES
 from fuzzytrack.schedulers.settings import SchedulerSettings, check_period, read_settings
 
 __all__ = ["FuzzyScheduler"]
+
+_REMEDY = "a tracker needs a gain everywhere: add a rule, or give the output a default"
 
 
 @schedulers.register("fuzzy")
@@ -345,6 +348,13 @@ def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:
     # Grades add up to 1 everywhere and every combination of sets has a rule: one always fires.
     if system.method == "exact" and find_ramps(rules) is not None:
         return
+    # Single points, too, which no grid need meet; but a table has values at its nodes only, and a
+    # relation at the points of the universes.
+    if system.method == "exact":
+        for output in rules.outputs:
+            hole = find_hole(rules, output.name) if output.default is None else None
+            if hole is not None and hole.stretches:
+                raise RuleBaseError(f"{rules.name}: {hole}; {_REMEDY}")
     axes = []
     for variable in rules.inputs:
         universe = variable.universe
@@ -359,7 +369,4 @@ def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:
             where = ", ".join(
                 f"{n}={x:g}" for n, x in zip(rules.input_names, points[empty[0]], strict=True)
             )
-            raise RuleBaseError(
-                f"{rules.name}: no rule about {name} fires at {where}; a tracker needs a gain "
-                "everywhere: add a rule, or give the output a default"
-            )
+            raise RuleBaseError(f"{rules.name}: no rule about {name} fires at {where}; {_REMEDY}")

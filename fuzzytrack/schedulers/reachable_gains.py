@@ -152,9 +152,9 @@ def reachable_gains(rules: RuleBase | str | os.PathLike[str], reach: str = "univ
 
     Notes
     -----
-    The defaults of the outputs, which hold where no rule fires, are included. The gains of an
-    opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are not: it ends after a few plots, so
-    whether the error shrinks in the long run does not depend on it.
+    The defaults of the outputs are included if there are inputs at which no rule fires. The gains
+    of an opening (`fuzzytrack.schedulers.fuzzy.FuzzyScheduler`) are not: it ends after a few plots,
+    so whether the error shrinks in the long run does not depend on it.
     """
     return _gains(as_rulebase(rules), reach)[0]
 

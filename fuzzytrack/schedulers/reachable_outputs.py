@@ -8,8 +8,8 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.coverage import find_hole
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.variable import Variable
 
 __all__ = ["REACHES", "output_values"]
 
@@ -27,8 +27,8 @@ def output_values(rules: RuleBase, names: tuple[str, ...], reach: str) -> tuple[
     names : tuple of str
         The outputs.
     reach : {"universe", "rules"}
-        ``universe``: anything in the universes of the outputs, and their defaults, which hold where
-        no rule fires. ``rules``: what the single rules conclude, and the defaults.
+        ``universe``: anything in the universes of the outputs. ``rules``: what the single rules
+        conclude, and the defaults if there are inputs at which no rule fires.
 
     Returns
     -------
@@ -48,16 +48,18 @@ def output_values(rules: RuleBase, names: tuple[str, ...], reach: str) -> tuple[
     if reach == "rules":
         concluded = _rule_conclusions(rules, names)
         return concluded, concluded
-    values = [_values(rules.output(name)) for name in names]
-    # A default may lie outside of its universe.
+    values = [_values(rules, name) for name in names]
     around = np.array(list(product(*((min(v), max(v)) for v in values))))
     return around, np.array(list(product(*values)))
 
 
-def _values(output: Variable) -> tuple[float, ...]:
-    """Values of an output: a few in its universe, the limits among them, and its default."""
+def _values(rules: RuleBase, name: str) -> tuple[float, ...]:
+    """Values of an output: a few in its universe, its limits among them; its default if used."""
+    output = rules.output(name)
     inside = tuple(np.linspace(output.universe.low, output.universe.high, _TRIED).tolist())
-    return inside if output.default is None else (*inside, output.default)
+    if output.default is None or find_hole(rules, name) is None:
+        return inside
+    return (*inside, output.default)
 
 
 def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
@@ -89,8 +91,8 @@ def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
             )
         if totals[0] > 0:
             rows.append(row)
-    # No rule fires: all outputs are their defaults.
+    # Each rule concludes about all of the outputs or none: they are silent at the same inputs.
     defaults = [rules.output(name).default for name in names]
-    if None not in defaults:
+    if None not in defaults and find_hole(rules, names[0]) is not None:
         rows.append([float(d) for d in defaults if d is not None])
     return np.array(rows)

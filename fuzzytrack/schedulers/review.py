@@ -11,6 +11,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.as_json import rule_as_json
+from fuzzytrack.fuzzy.coverage import Hole, find_hole
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
@@ -40,8 +41,12 @@ class Review:
         Combinations of sets with a rule, and all of them; None where they are too many to count.
     silent : float
         Share of the grid on which no rule fires.
+    holes : tuple of Hole
+        For each output about which no rule fires at some inputs, such inputs: they may be a single
+        point, on which no grid need have a point.
     ranges : dict of str to (float, float)
-        What each output reaches, and α and β where they follow from the outputs.
+        What each output reaches, its default included where no rule fires, and α and β where they
+        follow from the outputs.
     symmetry : str
         How the outputs change when all inputs change sign.
     table_bounds : dict of str to float
@@ -53,6 +58,7 @@ class Review:
     rules: RuleBase
     written: tuple[int, int] | None
     silent: float
+    holes: tuple[Hole, ...]
     ranges: dict[str, tuple[float, float]]
     symmetry: str
     table_bounds: dict[str, float]
@@ -71,6 +77,11 @@ class Review:
             "combinations_with_a_rule": self.written and self.written[0],
             "combinations": self.written and self.written[1],
             "silent": self.silent,
+            "holes": {
+                hole.output: {"text": str(hole), "underflow": hole.underflow}
+                | {name: [low, high] for name, low, high in hole.stretches}
+                for hole in self.holes
+            },
             "ranges": self.ranges,
             "symmetry": self.symmetry,
             "table_bounds": self.table_bounds,
@@ -146,11 +157,17 @@ def review(rules: RuleBase | str | os.PathLike[str]) -> Review:
     system = FuzzySystem(rules)
     grid = _grid(rules)
     values = system.evaluate(grid)
+    found = (find_hole(rules, name) for name in values)
+    holes = tuple(hole for hole in found if hole is not None)
+    # A point in each hole, where the output is its default.
+    silent = [hole.point for hole in holes if hole.stretches]
+    reached = system.evaluate(np.concatenate([grid, silent])) if silent else values
     return Review(
         rules=rules,
         written=_written(rules),
         silent=float((system.strengths(grid).max(axis=1) == 0).mean()),
-        ranges={name: _ends(v) for name, v in {**values, **gains_of(values)}.items()},
+        holes=holes,
+        ranges={name: _ends(v) for name, v in {**reached, **gains_of(reached)}.items()},
         symmetry=_symmetry(system, grid, values),
         table_bounds=_table_bounds(rules),
         schedules=", ".join(f"{key} {value}" for key, value in settings.items()),

@@ -15,7 +15,6 @@ import numpy as np
 
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.gains.period import poles_in_time
 from fuzzytrack.normalizations import Normalization, normalizations
 from fuzzytrack.schedulers.gain_outputs import (
@@ -174,7 +173,7 @@ def check_period(
             place,
         )
     # Real poles become negative where the outputs are large: so at their largest, if anywhere.
-    highest = {name: np.array(_highest(rules.output(name))) for name in outputs.names}
+    highest = {name: np.array(rules.output(name).universe.high) for name in outputs.names}
     try:
         poles_in_time(**outputs.gains(highest))
     except ValueError as error:
@@ -182,12 +181,6 @@ def check_period(
         raise RuleBaseError(
             f"period: at {limits}, the largest values of the outputs, {error}", place
         ) from error
-
-
-def _highest(output: Variable) -> float:
-    """Largest value of an output: the upper limit of its universe, or its default."""
-    high = output.universe.high
-    return high if output.default is None else max(high, output.default)
 
 
 def scheduler_schema() -> dict[str, Any]:

@@ -327,3 +327,62 @@ def test_bad_surfaces(fails, words, message):
 
 def test_unknown_rule_base(fails):
     assert "did you mean 'valve'" in fails("surface", "valvee")
+
+
+TOUCHING = """\
+rulebase: 1
+name: touching
+inputs:
+  p: {universe: [0, 8, 9], sets: {lo: {trapmf: [0, 0, 2, 4]}, hi: {trapmf: [4, 6, 8, 8]}}}
+  q: {universe: [0, 16, 9], sets: {lo: {trapmf: [0, 0, 2, 8]}, hi: {trapmf: [8, 9, 16, 16]}}}
+outputs:
+  u: {universe: [0, 1, 11], sets: {S: {trimf: [0, 0, 1]}, L: {trimf: [0, 1, 1]}}}
+operators: {and: min, or: max, defuzzification: centroid}
+rules:
+  - {if any: {p: lo, q: lo}, then: {u: S}}
+  - {if any: {p: hi, q: hi}, then: {u: L}}
+"""
+
+
+def test_check_names_a_single_point_without_a_rule(run, csv):
+    text = run("rulebase", "check", csv(TOUCHING, "touching.yaml")).stdout
+    assert "no rule fires on < 0.1 % of the inputs" in text
+    assert "no rule about u fires at p=4, q=8; it is then NaN; add a rule" in text
+    assert "u jumps to NaN (method table)" in text
+    # On no grid point: it is named all the same.
+    moved = TOUCHING.replace("2, 4]", "2, 3.14159]").replace("[4, 6", "[3.14159, 6")
+    text = run("rulebase", "check", csv(moved, "moved.yaml")).stdout
+    assert "no rule fires on" not in text
+    assert "no rule about u fires at p=3.14159, q=8" in text
+    default = TOUCHING.replace("u: {universe: [0, 1, 11],", "u: {universe: [0, 1, 11], default: 1,")
+    found = json.loads(run("rulebase", "check", csv(default, "default.yaml"), "--json").stdout)[0]
+    assert found["holes"]["u"]["p"] == [4, 4]
+    assert found["ranges"]["u"][1] == 1
+
+
+NARROW = """\
+rulebase: 1
+name: narrow
+inputs:
+  p: {universe: [0, 8, 9], sets: {lo: {gaussmf: [0, 0.1]}, hi: {gaussmf: [8, 0.1]}}}
+  q: {universe: [0, 8, 9], sets: {lo: {trapmf: [0, 0, 2, 6]}, hi: {trapmf: [2, 6, 7, 8]}}}
+outputs:
+  u: {universe: [0, 1, 11], default: 1, sets: {S: {trimf: [0, 0, 1]}, L: {trimf: [0, 1, 1]}}}
+operators: {and: product, or: sum, defuzzification: centroid}
+rules:
+  - {if: {p: lo, q: lo}, then: {u: S}}
+  - {if: {p: hi, q: hi}, then: {u: L}}
+"""
+
+
+def test_explain_tells_underflow_from_a_hole(run, csv):
+    file = csv(NARROW, "narrow.yaml")
+    lost = run("rulebase", "explain", file, "--at", "p=4,q=3").stdout
+    assert lost.startswith("the strengths of all rules underflow to 0 here\n")
+    assert run("rulebase", "explain", file, "--at", "p=4,q=8").stdout.startswith(
+        "the strengths of all rules underflow"
+    )
+    hole = NARROW.replace("gaussmf: [0, 0.1]", "trimf: [0, 0, 1]")
+    hole = csv(hole.replace("gaussmf: [8, 0.1]", "trimf: [7, 8, 8]"), "hole.yaml")
+    silent = run("rulebase", "explain", hole, "--at", "p=4,q=3").stdout
+    assert silent.startswith("no rule fires here\n")

@@ -341,6 +341,18 @@ def test_a_gap_matters_only_where_every_rule_looks():
     assert loads_rulebase(with_default)
 
 
+@pytest.mark.parametrize("value", ["2.001", "-0.5", "1e300"])
+def test_a_default_outside_of_its_universe_is_refused(value):
+    error = refusal(changed(LIST, "default: 1.5", f"default: {value}"))
+    assert error.message == (
+        f"default of v must be within its universe, [0, 2], got {float(value):g}"
+    )
+    lines = LIST.split("\n")
+    line = next(k for k, text in enumerate(lines) if "default: 1.5" in text)
+    assert (error.location.line, error.location.column) == (line + 1, lines[line].index("1.5") + 1)
+    assert loads_rulebase(changed(LIST, "default: 1.5", "default: 2")).output("v").default == 2
+
+
 def test_sigmoids_and_extended_end_sets_are_fine():
     text = changed(LIST, "hi: {trimf: [0, 1, 1]}", "hi: {sigmf: [0.5, 10]}")
     text = changed(text, "{trapmf: [0.7, 0.8, 1, 1]}", "{trimf: [0.7, 1, 1.3]}")

@@ -112,7 +112,7 @@ def outputs(draw, name):
             "singleton": (peak,),
         }[kind]
         sets.append(FuzzySet(term, kind, parameters))
-    default = draw(st.one_of(st.none(), NUMBERS))
+    default = draw(st.one_of(st.none(), st.floats(universe.low, universe.high)))
     return Variable(name, universe, tuple(sets), default, draw(TEXTS), draw(TEXTS))
 
 

@@ -50,7 +50,7 @@ def random_rule_base(rng):
                 "L": (middle, high, high),
             }.items()
         )
-        outputs += f"}}, default: {rng.uniform(*limits[name])}}}\n" if with_default else "}}\n"
+        outputs += f"}}, default: {rng.uniform(low, high)}}}\n" if with_default else "}}\n"
     for x in ("n", "z") if with_default else ("n", "z", "p"):
         then = ", ".join(f"{name}: {rng.choice(['S', 'M', 'L'])}" for name in kind)
         words.append(f"  - {{if: {{x: {x}}}, then: {{{then}}}}}")

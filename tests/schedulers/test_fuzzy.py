@@ -225,7 +225,7 @@ def test_more_inputs_than_signals(rules):
 
 def test_silence_is_refused_unless_there_is_a_default(rules):
     fewer = replace(rules, rules=rules.rules[1:], layout=None)
-    with pytest.raises(ft.RuleBaseError, match="no rule about stiffness fires at E=-1"):
+    with pytest.raises(ft.RuleBaseError, match="no rule about stiffness fires for E between -1"):
         ft.FuzzyScheduler(fewer)
     outputs = tuple(replace(v, default=v.universe.low) for v in fewer.outputs)
     scheduler = ft.FuzzyScheduler(replace(fewer, outputs=outputs))

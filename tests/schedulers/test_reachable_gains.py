@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.rulebase import Consequent, Operators
 from fuzzytrack.schedulers.reachable_gains import certify, reachable_gains
 
@@ -73,36 +74,47 @@ def test_an_output_that_reaches_zero_stiffness():
     assert np.abs(corners - reachable_gains(rules, "rules")[:, None]).max() > 0.3
 
 
-def test_a_default_is_reached_too():
+@pytest.fixture
+def with_hole():
+    """Rules without the first one, and with defaults at the lower ends of the universes."""
     rules = ft.load_rulebase("stiffness-damping")
     outputs = tuple(replace(v, default=v.universe.low) for v in rules.outputs)
-    more = reachable_gains(replace(rules, outputs=outputs), "rules")
+    return replace(rules, rules=rules.rules[1:], outputs=outputs, layout=None)
+
+
+def test_a_default_is_reached_where_no_rule_fires(with_hole):
     corner = ft.alpha_beta_from_w(0.25, 0.54)
+    more = reachable_gains(with_hole, "rules")
     assert np.abs(more - corner).sum(axis=1).min() < 1e-12
+    # Where a rule always fires it is not.
+    whole = replace(ft.load_rulebase("stiffness-damping"), outputs=with_hole.outputs)
+    assert np.array_equal(
+        reachable_gains(whole, "rules"), reachable_gains("stiffness-damping", "rules")
+    )
 
 
-@pytest.mark.parametrize("name", ["stiffness-damping", "omega-schedule", "chan-style"])
-def test_a_default_outside_of_the_universe_counts(name):
-    """Where no rule fires each output is its default, whatever its universe."""
-    rules = ft.load_rulebase(name)
-    outputs = rules.outputs
-    assert certify(rules).verdict == "certified"
-    far = replace(outputs[0], default=30.0)
-    found = certify(replace(rules, outputs=(far, *outputs[1:])))
-    assert found.verdict == "refuted"
-    # The sequence uses it: β tends to its limit of 4, or 2 for Kalata, as stiffness grows.
-    column, least = {"chan-style": (0, 30), "omega-schedule": (0, 0.998)}.get(name, (1, 3))
-    assert found.sequence[:, column].max() >= least
+GAP = """\
+rulebase: 1
+name: gap
+inputs:
+  E: {universe: [-1, 1, 21], sets: {n: {trapmf: [-1, -1, -0.9, FOOT]}, p: {trapmf: [0, 0.9, 1, 1]}}}
+outputs:
+  alpha: {universe: [0.1, 1.9, 19], default: 1.9, sets: {a: {singleton: [0.5]}}}
+  beta: {universe: [0.1, 0.3, 19], default: 0.3, sets: {b: {singleton: [0.2]}}}
+operators: {and: product, or: sum, defuzzification: weighted-centers}
+rules:
+  - {if: {E: n}, then: {alpha: a, beta: b}}
+  - {if: {E: p}, then: {alpha: a, beta: b}}
+"""
 
 
-def test_a_period_is_refused_where_a_default_has_a_negative_pole():
-    rules = ft.load_rulebase("stiffness-damping")
-    far = zip(rules.outputs, (3.0, 2.0), strict=True)
-    changed = replace(rules, outputs=tuple(replace(v, default=value) for v, value in far))
-    assert certify(rules, period=4).verdict == "certified"
-    for call in (certify, ft.FuzzyScheduler):
-        with pytest.raises(ft.RuleBaseError, match="at stiffness=3, damping=2, the largest"):
-            call(changed, period=4)
+@pytest.mark.parametrize(("foot", "reached"), [("0", True), ("-0.5", True), ("0.1", False)])
+def test_a_default_counts_for_a_single_point_too(foot, reached):
+    """With feet that touch in 0, no rule fires there alone; with feet that overlap, one does."""
+    rules = loads_rulebase(GAP.replace("FOOT", foot))
+    found = reachable_gains(rules, "rules")
+    assert (found == [1.9, 0.3]).all(axis=1).any() == reached
+    assert certify(rules, reach="rules").verdict == ("refuted" if reached else "certified")
 
 
 def test_what_cannot_be_certified():
@@ -126,9 +138,9 @@ def test_what_cannot_be_certified():
 
 def test_negative_stiffness_is_refused():
     rules = ft.load_rulebase("stiffness-damping")
-    changed = replace(rules, outputs=(replace(rules.outputs[0], default=-1.0), rules.outputs[1]))
+    low = replace(rules.outputs[0], universe=replace(rules.outputs[0].universe, low=-1.0))
     with pytest.raises(ft.RuleBaseError, match="must not be negative, and reach -1"):
-        certify(changed)
+        certify(replace(rules, outputs=(low, rules.outputs[1])))
 
 
 def test_limits_of_a_covariance():
@@ -142,7 +154,7 @@ def test_limits_of_a_covariance():
     assert sorted(found.contraction) == [10, 20, 40]
     # Weighted centers: all values lie between those that the rules name.
     assert certify(rules, reach="rules").limits.noise == (0.09, 2.7)
-    noise = replace(rules.outputs[0], default=0.0)
+    noise = replace(rules.outputs[0], universe=replace(rules.outputs[0].universe, low=0.0))
     found = certify(replace(rules, outputs=(noise, *rules.outputs[1:])))
     assert (found.verdict, found.limits.noise[0]) == ("not decided", 0)
     assert found.missing.startswith("the noise must be above 0")
