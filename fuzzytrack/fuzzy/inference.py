@@ -9,10 +9,14 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import Operators, RuleBase
-from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.reprs import summary
 
 __all__ = ["Conclusions", "conclusions", "conjoin", "disjoin", "output_grid", "strengths"]
+
+
+#: Distance from a grid point, in steps of the grid, up to which a place is on it.
+_ROUNDING = 1e-9
 
 
 def conjoin(operators: Operators, a: Array, b: Array | float) -> Array:
@@ -29,7 +33,8 @@ def output_grid(operators: Operators, output: Variable) -> tuple[Array, Array]:
     """Points on which an output is inferred, and the sets' grades there.
 
     Weighted centers (Eq. 3.13) are the centroid over a universe made of the sets' centers, each
-    belonging to its own set alone; so the same inference serves them.
+    belonging to its own set alone; so the same inference serves them. A singleton between two grid
+    points is a point more, which belongs to singletons alone: the sums over the other sets stay.
 
     Returns
     -------
@@ -38,7 +43,26 @@ def output_grid(operators: Operators, output: Variable) -> tuple[Array, Array]:
     """
     if operators.defuzzification == "weighted-centers":
         return output.centers(), np.eye(len(output.sets))
-    return output.universe.values, output.memberships()
+    universe = output.universe
+    places = {s.parameters[0] for s in output.sets if s.shape == "singleton"}
+    inside = (p for p in places if universe.low <= p <= universe.high)
+    between = [p for p in inside if not _is_on(universe, p)]
+    if not between:
+        return universe.values, output.memberships()
+    y = np.sort(np.concatenate([universe.values, between]))
+    points = np.searchsorted(y, universe.values)
+    grades = np.zeros((len(output.sets), len(y)))
+    grades[:, points] = output.memberships()
+    for row, fuzzy_set in enumerate(output.sets):
+        if fuzzy_set.shape == "singleton" and fuzzy_set.parameters[0] in between:
+            grades[row] = y == fuzzy_set.parameters[0]
+    return y, grades
+
+
+def _is_on(universe: Universe, place: float) -> bool:
+    """Whether a place is one of the grid points, up to rounding."""
+    nearest = universe.values[universe.nearest(np.asarray(place))]
+    return bool(abs(nearest - place) <= _ROUNDING * universe.step)
 
 
 @dataclass(frozen=True)

@@ -343,7 +343,7 @@ def plot_relation(
     figure, grid = shared.panels("axes", axes, 1 if at is None else 2, columns=2, size=(4.8, 4.0))
     y, _ = output_grid(base.operators, target)
     by_set = base.operators.defuzzification == "weighted-centers"
-    _image(grid[0], figure, matrix, variable, target, by_set)
+    _image(grid[0], figure, matrix, variable, target, None if by_set else y)
     if at is not None:
         column = int(universe.nearest(np.asarray(at)))
         point = float(universe.values[column])
@@ -354,11 +354,17 @@ def plot_relation(
 
 
 def _image(
-    ax: Axes, figure: Figure, matrix: Array, variable: Variable, target: Variable, by_set: bool
+    ax: Axes, figure: Figure, matrix: Array, variable: Variable, target: Variable, y: Array | None
 ) -> None:
-    x = _edges(variable.universe)
-    y = np.arange(matrix.shape[1] + 1) - 0.5 if by_set else _edges(target.universe)
-    mesh = ax.pcolormesh(x, y, matrix.T, cmap=shared.COLORMAP, vmin=0.0)
+    """Draw the matrix; `y` are the points of the output, None for one row for each of its sets."""
+    x, by_set = _edges(variable.universe), y is None
+    if y is None:
+        edges = np.arange(matrix.shape[1] + 1) - 0.5
+    else:
+        edges = _edges(target.universe)
+        # With points for singletons between those of the grid.
+        edges = np.concatenate([edges[:1], (y[1:] + y[:-1]) / 2, edges[-1:]])
+    mesh = ax.pcolormesh(x, edges, matrix.T, cmap=shared.COLORMAP, vmin=0.0)
     figure.colorbar(mesh, ax=ax, label="membership in the relation")
     shared.span_axis(ax, "x", variable.universe.low, variable.universe.high)
     if by_set:

@@ -23,6 +23,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from fuzzytrack.errors import NoRuleFiresWarning, RuleBaseError
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
+from fuzzytrack.fuzzy.kernel import infer_function
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.rulebase import DEFUZZIFICATIONS, Operators, RuleBase
 from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
@@ -430,3 +431,58 @@ def test_a_default_replaces_nan_only(base, x, y):
     without = value(base, x, y)
     expected = 0.125 if np.isnan(without) else without
     assert value(replace(base, outputs=(output,)), x, y) == expected
+
+
+# ------------------------------------------------------------------ singletons between grid points
+
+
+def spikes(places, defuzzification="centroid", algebra=("product", "sum"), points=11):
+    """Two sets of an input; each rule concludes a spike of its own."""
+    x = Variable("x", Universe(0, 1, 11), triangles("ab", (0.0, 1.0)))
+    sets = tuple(FuzzySet(w, "singleton", (p,)) for w, p in zip("st", places, strict=True))
+    out = Variable("out", Universe(0, 10, points), sets)
+    rules = (rule({"x": "a"}, is_set("out", "s")), rule({"x": "b"}, is_set("out", "t")))
+    return RuleBase("spikes", (x,), (out,), rules, Operators(*algebra, defuzzification))
+
+
+@settings(max_examples=100)
+@given(
+    st.tuples(st.floats(0, 10), st.floats(0, 10)).map(sorted),
+    st.floats(0, 1),
+    st.sampled_from(ALGEBRAS),
+    st.integers(2, 12),
+)
+def test_the_centroid_of_singletons_does_not_depend_on_the_grid(places, x, algebra, points):
+    base = spikes(places, algebra=algebra, points=points)
+    expected = (1 - x) * places[0] + x * places[1]
+    if places[0] == places[1]:
+        expected = places[0]
+    # Up to 1e-9 steps away, a place is on a grid point.
+    assert FuzzySystem(base)(x=x)["out"] == pytest.approx(expected, abs=1e-7)
+    (scalar,) = infer_function(FuzzySystem(base))((x,))
+    assert scalar == pytest.approx(expected, abs=1e-7)
+
+
+def test_singletons_between_grid_points_keep_their_place_with_every_method():
+    places = (3.21, 7.77)
+    for method in ("centroid", "bisector", "mom", "som", "lom"):
+        for name in ("exact", "relation"):
+            system = FuzzySystem(spikes(places, method), name)
+            assert system(x=0.0)["out"] == 3.21
+            assert system(x=1.0)["out"] == 7.77
+    assert FuzzySystem(spikes(places, "som"))(x=0.5)["out"] == 3.21
+    assert FuzzySystem(spikes(places, "mom"))(x=0.5)["out"] == pytest.approx(5.49)
+
+
+def test_other_sets_are_summed_over_the_grid_alone():
+    base = spikes((3.21, 7.77))
+    triangle = FuzzySet("s", "trimf", (0.0, 3.0, 4.0))
+    mixed = replace(
+        base, outputs=(replace(base.outputs[0], sets=(triangle, *base.outputs[0].sets[1:])),)
+    )
+    y = base.outputs[0].universe.values
+    weights = triangle.membership(y)
+    assert FuzzySystem(mixed)(x=0.0)["out"] == pytest.approx(weights @ y / weights.sum())
+    # A spike weighs 1, as the peak of the triangle does on its point of the grid.
+    expected = (weights @ y + 7.77) / (weights.sum() + 1)
+    assert FuzzySystem(mixed)(x=0.5)["out"] == pytest.approx(expected)
