@@ -37,13 +37,12 @@ def fails(cells, message, clock=None):
 # -------------------------------------------------------------------- numbers
 
 
-@given(st.lists(st.floats(-(2.0**22), 2.0**22, exclude_max=True), min_size=1))
+@given(st.lists(st.floats(-(2.0**22), 2.0**22, exclude_min=True, exclude_max=True), min_size=1))
 def test_small_numbers_of_seconds_are_used_as_they_are(values):
     clock, found = read(list(map(repr, values)))
     assert (clock.form, clock.unit, clock.origin, clock.note) == ("number", "s", 0, "")
-    if abs(values[0]) < 2**22:
-        assert np.array_equal(found, values)
-        assert np.array_equal(clock.seconds(np.array(values), [], "", ""), values)
+    assert np.array_equal(found, values)
+    assert np.array_equal(clock.seconds(np.array(values), [], "", ""), values)
 
 
 WHOLE = st.integers(-(10**6), 10**6)
