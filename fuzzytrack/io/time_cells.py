@@ -337,9 +337,10 @@ def array_counts(values: NDArray[Any], scale: int) -> Counts | None:
     """
     kind = values.dtype.kind
     if kind in "Mm":
-        counts = values.astype(f"{kind}8[ns]")
-        fits = counts.astype(values.dtype) == values
-        return counts.astype(np.int64) if fits.all() else None
+        times = values.astype(f"{kind}8[ns]")
+        counts = times.astype(np.int64)
+        fits = (times.astype(values.dtype) == values) & (np.abs(counts) <= _LARGEST)
+        return counts if fits.all() else None
     if max(abs(int(values.max())), abs(int(values.min()))) * scale > _LARGEST:
         return None
     if kind in "iu":
