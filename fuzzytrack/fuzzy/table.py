@@ -9,6 +9,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.reprs import summary
 
 __all__ = ["InterpolationTable", "build_table", "default_nodes"]
@@ -18,6 +19,10 @@ MAX_NODES = 4_000_000
 # With three, a kink is met at 3/4 of its height or more on each axis: twice the largest difference
 # covers it on two axes.
 PROBES_PER_CELL = 3
+#: How far beside a jump its sides are probed, as a part of the universe; and most inputs of rule
+#: bases whose jumps are all probed.
+_BESIDE = 1e-9
+_ALL_KNOTS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +37,9 @@ class InterpolationTable:
         For each output its values at the nodes, in the order of `axes`.
     bounds : dict of float
         For each output twice the largest difference from the tabulated function met at build,
-        over a net of probes inside the cells. A bound for functions that are smooth between the
-        probes; where an output jumps (``mom``, a default), it is of the size of the jump, and
+        over a net of probes inside the cells, and with one or two inputs on both sides of the ends
+        and cores of all sets. A bound for functions that are smooth between the probes; where an
+        output jumps (``mom``, a default), it is of the size of the jump, once or twice, and
         infinite where the table has cells in which a rule fires at some points only.
     """
 
@@ -89,7 +95,8 @@ def build_table(
     shape = (nodes,) * n_inputs
     table = InterpolationTable(axes, {name: v.reshape(shape) for name, v in flat.items()}, {})
     worst = dict.fromkeys(flat, 0.0)
-    for probes in _probes(axes):
+    knots = [_knots(variable) for variable in rulebase.inputs]
+    for probes in _probes(axes, knots):
         truth, answer = evaluate(probes), table(probes)
         for name in worst:
             gap = np.abs(answer[name] - truth[name])
@@ -105,20 +112,40 @@ def _net(axes: tuple[Array, ...]) -> Array:
     return np.stack([a.ravel() for a in np.meshgrid(*axes, indexing="ij")], axis=-1)
 
 
-def _probes(axes: tuple[Array, ...]) -> list[Array]:
-    """Nets of points inside the cells, a few thousand points to a net at the most."""
+def _knots(variable: Variable) -> Array:
+    """Points of an input at which an output may jump, points beside them, and points between."""
+    low, high = variable.universe.low, variable.universe.high
+    ends = {e for s in variable.sets for e in (*s.support()[:2], *s.core(low, high))}
+    knots = np.array(sorted(e for e in ends if low <= e <= high))
+    beside = _BESIDE * (high - low)
+    between = (knots[1:] + knots[:-1]) / 2
+    found = np.concatenate([knots, knots - beside, knots + beside, between])
+    return np.unique(np.clip(found, low, high))
+
+
+def _probes(axes: tuple[Array, ...], knots: list[Array]) -> list[Array]:
+    """Nets of points inside the cells and at `knots`, some thousand points to a net at the most.
+
+    Of each axis up to so many points are taken that there are 1,000,000 inside the cells in all,
+    and with three inputs or more as many knots.
+    """
     inside = (np.arange(PROBES_PER_CELL) + 0.5) / PROBES_PER_CELL
+    limit = max(2, int(1_000_000 ** (1 / len(axes))))
     fine = []
-    for axis in axes:
-        cells = axis[:-1]
-        limit = max(2, int(1_000_000 ** (1 / len(axes))))
-        dense = (cells[:, None] + inside * (axis[1] - axis[0])).ravel()
-        if len(dense) > limit:
-            dense = dense[np.unique(np.linspace(0, len(dense) - 1, limit).astype(int))]
-        fine.append(dense)
+    for axis, own in zip(axes, knots, strict=True):
+        dense = _thinned((axis[:-1, None] + inside * (axis[1] - axis[0])).ravel(), limit)
+        kept = own if len(axes) <= _ALL_KNOTS else _thinned(own, max(2, limit // 4))
+        fine.append(np.union1d(dense, kept))
     first, rest = fine[0], fine[1:]
     rows = max(1, 65_536 // max(1, int(np.prod([len(r) for r in rest], dtype=float))))
     return [_net((first[i : i + rows], *rest)) for i in range(0, len(first), rows)]
+
+
+def _thinned(points: Array, limit: int) -> Array:
+    """So many of some points, evenly from the first to the last."""
+    if len(points) <= limit:
+        return points
+    return np.asarray(points[np.unique(np.linspace(0, len(points) - 1, limit).astype(int))])
 
 
 def _largest(values: Array) -> float:

@@ -1,8 +1,11 @@
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from builders import asymmetric_base, is_set, random_points, rule, triangles
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.interpolate import interpn
 
 from fuzzytrack.errors import NoRuleFiresWarning
@@ -154,3 +157,74 @@ def test_number_of_nodes_is_checked(nodes):
     message = rf"table: {nodes} nodes on each of 2 inputs; at least 2 .* at most 4000000 in all"
     with pytest.raises(ValueError, match=message):
         FuzzySystem(asymmetric_base(), "table", table_nodes=nodes)
+
+
+# ------------------------------------------------------------------ jumps
+
+POINTS = st.integers(-2, 14).map(lambda k: k / 12)
+FLANKS = st.sampled_from([(0, 1, 2, 3), (0, 0, 2, 3), (0, 1, 3, 3), (0, 0, 3, 3), (0, 1, 1, 3)])
+
+
+@st.composite
+def jumping_bases(draw):
+    """Rule bases whose sets have vertical flanks, with gaps where the default holds."""
+    inputs = []
+    for name in "ab"[: draw(st.integers(1, 2))]:
+        sets = []
+        for k in range(draw(st.integers(1, 3))):
+            corners = sorted(draw(st.lists(POINTS, min_size=4, max_size=4)))
+            flank = draw(FLANKS)
+            # Often narrower than a cell of the table, and than the probes in it.
+            width = draw(st.sampled_from([1.0, 0.01]))
+            near = [corners[0] + width * (c - corners[0]) for c in corners]
+            sets.append(FuzzySet(f"s{k}", "trapmf", tuple(near[j] for j in flank)))
+        inputs.append(Variable(name, Universe(0, 1, 11), tuple(sets)))
+    rows = draw(
+        st.lists(
+            st.tuples(
+                st.fixed_dictionaries({v.name: st.sampled_from(v.set_names) for v in inputs}),
+                st.sampled_from("pqr"),
+            ),
+            min_size=1,
+            max_size=4,
+            unique_by=lambda row: frozenset(row[0].items()),
+        )
+    )
+    out = Variable(
+        "out", Universe(0, 1, 21), triangles("pqr", (0.0, 0.3, 1.0)), draw(st.floats(0, 1))
+    )
+    operators = Operators(
+        draw(st.sampled_from(["product", "min"])),
+        draw(st.sampled_from(["sum", "max"])),
+        draw(st.sampled_from(["centroid", "weighted-centers", "mom", "som", "bisector"])),
+    )
+    rules = tuple(rule(conditions, is_set("out", term)) for conditions, term in rows)
+    return RuleBase("jumps", tuple(inputs), (out,), rules, operators)
+
+
+@settings(max_examples=30, deadline=None)
+@given(jumping_bases(), st.integers(5, 40))
+def test_the_bound_holds_on_both_sides_of_a_jump(base, nodes):
+    table = FuzzySystem(base, "table", table_nodes=nodes)
+    axes = []
+    for variable in base.inputs:
+        corners = np.array([p for s in variable.sets for p in s.breakpoints()])
+        beside = np.add.outer(corners, [0.0, 1e-9, -1e-9, 1e-4, -1e-4, 1e-3, -1e-3]).ravel()
+        axes.append(np.clip(np.concatenate([np.linspace(0, 1, 33), beside]), 0, 1))
+    points = dict(zip(base.input_names, np.meshgrid(*axes), strict=True))
+    error = np.abs(table(**points)["out"] - FuzzySystem(base)(**points)["out"])
+    assert error.max() <= table.table_bounds["out"]
+
+
+def test_a_narrow_gap_between_two_probes_is_in_the_bound():
+    sets = (
+        FuzzySet("a", "trapmf", (0.0, 0.0, 0.501, 0.501)),
+        FuzzySet("b", "trapmf", (0.502, 0.502, 1.0, 1.0)),
+    )
+    base = replace(holed_base(0.5), inputs=(Variable("x", Universe(0, 1, 11), sets),))
+    system = FuzzySystem(base, "table", table_nodes=11)
+    truth = FuzzySystem(base)(x=0.5015)["out"]
+    assert truth == 0.5
+    assert abs(system(x=0.5015)["out"] - truth) <= system.table_bounds["out"]
+    alone = FuzzySystem(replace(base, outputs=holed_base().outputs), "table", table_nodes=11)
+    assert alone.table_bounds == {"out": np.inf}
