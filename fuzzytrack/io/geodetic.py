@@ -143,6 +143,7 @@ class LocalFrame:
         position = np.stack(
             pymap3d.geodetic2enu(north, east, known, self.lat, self.lon, self.alt), axis=-1
         ).reshape(-1, 3)
+        position += 0.0  # no -0.0 in files
         if alt is None:
             return LocalPlots(position[:, :2], impossible, far)
         position[np.isnan(height), 2] = np.nan

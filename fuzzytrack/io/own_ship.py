@@ -39,9 +39,10 @@ def relative_to_own_ship(
     Returns
     -------
     ConvertedPlots
-        Where own ship's position or heading is NaN, the plot is a missed one. Marked as impossible
-        are, beside the plots that were, those with a heading outside [-360, 720], and with an
-        own ship whose place does not exist or is out of the frame's reach.
+        Where own ship's position or heading is NaN, the plot is a missed one. An axis that the plot
+        does not have stays NaN; to be turned, a plot needs all. Marked as impossible are, beside
+        the plots that were, those with a heading outside [-360, 720], and with an own ship whose
+        place does not exist or is out of the frame's reach.
 
     Raises
     ------
@@ -63,6 +64,7 @@ def relative_to_own_ship(
     axes = min(places.shape[1], plots.position.shape[1])
     position = plots.position.copy()
     position[:, :axes] += places[:, :axes]
+    position[np.isnan(places).any(axis=1)] = np.nan
     impossible = plots.impossible | np.isinf(places).any(axis=1)
     return _known(position, plots.covariance, impossible)
 
@@ -123,9 +125,9 @@ def _turned_covariance(turn: Array, covariance: Array | None) -> Array | None:
 
 
 def _known(position: Array, covariance: Array | None, impossible: Mask) -> ConvertedPlots:
-    """Plots without those that a part is missing of."""
-    lost = impossible | np.isnan(position).any(axis=1)
-    position = np.where(lost[:, None], np.nan, position)
+    """Plots without the impossible ones; a covariance needs all axes of a plot."""
+    position = np.where(impossible[:, None], np.nan, position)
     if covariance is not None:
-        covariance = np.where(lost[:, None, None], np.nan, covariance)
+        covariance = covariance.copy()
+        covariance[np.isnan(position).any(axis=1)] = np.nan
     return ConvertedPlots(position, covariance, impossible)

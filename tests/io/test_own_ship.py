@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fuzzytrack.io.geodetic import LocalFrame
 from fuzzytrack.io.own_ship import relative_to_own_ship
-from fuzzytrack.io.polar import polar_to_cartesian
+from fuzzytrack.io.polar import ConvertedPlots, polar_to_cartesian
 
 NOISE = {"sigma_range": 5.0, "sigma_azimuth": 0.02}
 bearings = st.floats(-360, 720)
@@ -105,6 +105,16 @@ def test_what_is_missing_or_impossible_is_missed():
     assert on_earth.covariance is None
     assert np.isnan(on_earth.position).all(axis=1).tolist() == [False, True, True, True]
     assert on_earth.impossible.tolist() == [False, True, True, False]
+
+
+def test_one_axis_of_a_plot_may_be_missing():
+    position = np.array([[1.0, np.nan], [1.0, 2.0]])
+    plots = ConvertedPlots(position, None, np.zeros(2, dtype=bool))
+    found = relative_to_own_ship(plots, [[10.0, 10.0], [10.0, 10.0]])
+    assert np.array_equal(found.position, [[11.0, np.nan], [11.0, 12.0]], equal_nan=True)
+    turned = relative_to_own_ship(plots, heading=90.0).position
+    assert np.isnan(turned[0]).all()
+    assert turned[1] == pytest.approx([2.0, -1.0])
 
 
 def test_own_ship_without_a_height_is_at_that_of_the_origin():
