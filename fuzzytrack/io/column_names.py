@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["plain_name", "unit_of"]
+__all__ = ["is_unit", "plain_name", "unit_of"]
 
 # Units, each followed by its other spellings, in lower case.
 _SPELLINGS = {
@@ -27,7 +27,6 @@ _SPELLINGS = {
     "kn": ("kt", "kts", "knot", "knots"),
     "m/s2": ("m/s^2", "m/s²", "ms-2", "m s-2"),
     "px": ("pixel", "pixels"),
-    "-": ("1",),
 }
 _UNITS = {word: unit for unit, words in _SPELLINGS.items() for word in (unit, *words)}
 
@@ -85,6 +84,13 @@ def unit_of(text: str) -> str:
     if len(text) > 1 and text[0] + text[-1] in ("[]", "()", "{}", "<>"):
         text = text[1:-1].strip()
     return _UNITS.get(text.lower(), text)
+
+
+def is_unit(cell: str) -> bool:
+    """Whether a cell is a unit that is known, or any text in brackets."""
+    text = cell.strip()
+    in_brackets = len(text) > 2 and text[0] + text[-1] in ("[]", "()", "{}", "<>")
+    return (in_brackets or text.lower() in _UNITS) and not text.isdigit()
 
 
 def _joined(name: str) -> str:

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from itertools import accumulate, islice
+from io import BufferedReader, StringIO
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.table import Column, Kind, Table, Values, checked_names, silent
+from fuzzytrack.io.byte_stream import ByteStream, open_bytes
+from fuzzytrack.io.csv_blocks import block_parts, is_large, parser
+from fuzzytrack.io.csv_lines import CHUNK, Part, line_parts, text_lines
+from fuzzytrack.io.recognition import HEAD, encoding_of, recognize
+from fuzzytrack.io.table import Column, Kind, Table, Values, silent
 from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
 
 __all__ = ["CsvSource", "check", "open_source", "open_target"]
-
-# Rows at a time; many more at once keep the garbage collector busy.
-CHUNK = 5_000
 
 
 def check(file: str) -> None:
@@ -34,7 +36,14 @@ def check(file: str) -> None:
 
 @contextmanager
 def open_source(file: str, form: TextForm = PLAIN) -> Iterator[CsvSource]:
-    """Open a CSV file: UTF-8, separated by commas, names in the first row.
+    """Open a CSV file, plain or compressed.
+
+    Parameters
+    ----------
+    file : str
+        ``-`` is standard input.
+    form : TextForm, optional
+        How it is written; what is None there is recognized by the first lines.
 
     Raises
     ------
@@ -43,104 +52,105 @@ def open_source(file: str, form: TextForm = PLAIN) -> Iterator[CsvSource]:
     OSError
         If it cannot be read.
     """
-    with open(file, encoding="utf-8-sig", newline="") as stream:
-        reader = csv.reader(stream, strict=True)
+    with open_bytes(file) as stream:
         try:
-            yield CsvSource(file, stream, reader, form)
-        except UnicodeDecodeError:
-            raise _not_utf8(file) from None
+            yield CsvSource(stream, form)
+        except UnicodeDecodeError as error:
+            raise _not_text(stream, error) from None
         except csv.Error as error:
-            raise DataError(f"{file}: row {reader.line_num}: not CSV: {error}") from None
+            raise DataError(f"{stream.file}: row 1: not CSV: {error}") from None
 
 
 class CsvSource:
-    """An open CSV file; see `fuzzytrack.io.formats.Source`."""
+    """An open CSV file; see `fuzzytrack.io.source.Source`."""
 
-    def __init__(self, file: str, stream: IO[str], reader: Any, form: TextForm) -> None:
-        self.file, self.form = file, form
-        self.units: dict[str, str] = {}
-        self.notes: list[str] = []
+    def __init__(self, stream: ByteStream, form: TextForm) -> None:
+        self.file, self._stream = stream.file, stream
+        head = stream.take(HEAD)
+        stream.put_back(head)
+        self.encoding = encoding_of(self.file, head)
+        self._layout = recognize(self.file, _first_lines(self.file, head, self.encoding), form)
+        self.form, self.units = self._layout.form, self._layout.units
         # Several columns may have no name.
-        self._names = _header(reader, file)
-        self.types = dict.fromkeys(self._names, "text")
-        self._stream, self._reader = stream, reader
+        self.types = dict.fromkeys(self._layout.names, "text")
+        self._left_out = {"comment line": self._layout.comments}
+
+    @property
+    def notes(self) -> list[str]:
+        """What has been left out of the file so far, and why."""
+        plural = {"repeated row of names": "repeated rows of names"}
+        return [
+            f"{self.file}: {counted(count, what, plural.get(what))} left out"
+            for what, count in self._left_out.items()
+            if count
+        ]
 
     def tables(
         self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
     ) -> Iterator[Table]:
-        """Read columns, at most so many rows at a time."""
-        places = [self._names.index(name) for name in kinds]
+        """Read columns, so many rows at a time."""
         # Of the table that is being read.
         columns: list[Column] = []
         found: list[NDArray[np.int64]] = []
         waiting = 0
-        size = os.fstat(self._stream.fileno()).st_size
-        for lines, cells in _chunks(self.file, self._reader, len(self._names)):
-            step = rows or len(lines)
-            for start in range(0, len(lines), step):
-                part = lines[start : start + step]
-                if rows is not None and waiting + len(part) > rows:
-                    yield Table.of(self.file, columns, np.concatenate(found))
-                    found, waiting = [], 0
-                if not found:
+        for part in self._parts(kinds):
+            start, size = 0, len(part.rows)
+            while start < size:
+                if not waiting:
                     columns = [
                         Column(self.file, name, kind, self.form) for name, kind in kinds.items()
                     ]
-                for column, place in zip(columns, places, strict=True):
-                    column.take_cells(cells[place][start : start + step], part)
-                found.append(np.array(part))
-                waiting += len(part)
-            # What is no ordinary file, as a pipe, has no size.
-            if size:
-                progress(min(self._stream.buffer.tell() / size, 1.0))  # type: ignore[attr-defined]
-        if found:
+                stop = size if rows is None else min(size, start + rows - waiting)
+                part.take(columns, start, stop)
+                found.append(part.rows[start:stop])
+                waiting += stop - start
+                start = stop
+                if waiting == rows:
+                    yield Table.of(self.file, columns, np.concatenate(found))
+                    found, waiting = [], 0
+            if (share := self._stream.share()) is not None:
+                progress(share)
+        if waiting:
             yield Table.of(self.file, columns, np.concatenate(found))
 
-
-def _header(reader: Any, file: str) -> tuple[str, ...]:
-    header = next((row for row in reader if row), None)
-    if header is None:
-        raise DataError(f"{file}: is empty; expected a row of column names, then data")
-    return checked_names([name.strip() for name in header], file)
-
-
-def _chunks(
-    file: str, reader: Any, width: int
-) -> Iterator[tuple[Sequence[int], list[tuple[str, ...]]]]:
-    """Row numbers and columns of some rows at a time; blank lines are left out."""
-    before = reader.line_num
-    while cells := list(islice(reader, CHUNK)):
-        rows: Sequence[int] = range(before + 1, reader.line_num + 1)
-        if len(rows) != len(cells):  # cells with line breaks
-            lines = (1 + sum(cell.count("\n") for cell in row) for row in cells)
-            rows = list(accumulate(lines, initial=before))[1:]
-        before = reader.line_num
-        widths = set(map(len, cells))
-        if 0 in widths:
-            kept = [k for k, row in enumerate(cells) if row]
-            rows, cells = [rows[k] for k in kept], [cells[k] for k in kept]
-            widths.discard(0)
-        if not widths <= {width}:
-            wrong = next(k for k, row in enumerate(cells) if len(row) != width)
-            raise DataError(
-                f"{file}: row {rows[wrong]}: {counted(len(cells[wrong]), 'cell')}; "
-                f"expected {width}, as in the header"
-            )
-        if cells:
-            yield rows, list(zip(*cells, strict=True))
+    def _parts(self, kinds: Mapping[str, Kind]) -> Iterator[Part]:
+        """Rows of the file, in the way that is fastest."""
+        layout, counts = self._layout, self._left_out
+        in_blocks = self.encoding[:5] == "utf-8" and self.form.delimiter != " "
+        if in_blocks and is_large(self._stream) and parser() is not None:
+            return block_parts(self._stream, layout, kinds, counts)
+        return line_parts(text_lines(self._stream, self.encoding), layout, 0, counts)
 
 
-def _not_utf8(file: str) -> DataError:
-    with open(file, "rb") as stream:
-        for number, line in enumerate(stream, 1):
-            try:
-                line.decode("utf-8")
-            except UnicodeDecodeError as error:
-                byte = line[error.start]
-                return DataError(
-                    f"{file}: row {number}: byte 0x{byte:02x} is not UTF-8; save the file as UTF-8"
-                )
-    return DataError(f"{file}: is not UTF-8; save the file as UTF-8")  # pragma: no cover
+def _first_lines(file: str, head: bytes, encoding: str) -> list[str]:
+    """Lines of the beginning of a file, as far as they are whole."""
+    is_whole = len(head) < HEAD
+    text = codecs.getincrementaldecoder(encoding)().decode(head, is_whole)
+    lines = list(StringIO(text, newline=""))
+    if not is_whole and len(lines) == 1:
+        raise DataError(f"{file}: row 1: is longer than {HEAD} bytes; expected names of columns")
+    return lines if is_whole else lines[:-1]
+
+
+def _not_text(source: ByteStream, error: UnicodeDecodeError) -> DataError:
+    """Error about bytes that are not text, with their row if the file can be read again."""
+    file = source.file
+    if error.encoding[:5] != "utf-8":
+        return DataError(
+            f"{file}: is not {error.encoding.upper()}: {error.reason}; save it as UTF-8"
+        )
+    if os.path.isfile(file):
+        with open_bytes(file) as stream:
+            for number, line in enumerate(BufferedReader(stream), 1):
+                try:
+                    line.decode("utf-8")
+                except UnicodeDecodeError as found:
+                    byte = line[found.start]
+                    return DataError(
+                        f"{file}: row {number}: byte 0x{byte:02x} is not UTF-8; "
+                        "save the file as UTF-8"
+                    )
+    return DataError(f"{file}: is not UTF-8; save it as UTF-8")
 
 
 # -------------------------------------------------------------------- writing

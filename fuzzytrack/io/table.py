@@ -7,6 +7,7 @@ tables.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
@@ -47,6 +48,12 @@ _EXPECTED = {
     "time": "a time",
     "text": "text",
 }
+
+
+# Numbers with a decimal point, a decimal comma, and with marks between thousands.
+_POINT = re.compile(r"[+-]?(?:\d+\.\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(?:[ ,.']\d{3})+(?:[.,]\d*)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,6 +158,10 @@ class Column:
         self._parts: list[Any] = []
         self._codes: dict[str, int] = {}
 
+    def empty(self) -> Column:
+        """A column with the same checks of which nothing has been read."""
+        return Column(self.file, self.name, self.kind, self.form)
+
     def numbers(self) -> Array:
         """All numbers read so far."""
         return np.concatenate(self._parts) if self._parts else np.empty(0)
@@ -178,6 +189,11 @@ class Column:
             words = list(map(str.strip, cells))
             if self.kind != "text" and not all(words):
                 raise self.error(rows[words.index("")], "")
+            if self.kind == "time" and self.form.decimal == ",":
+                words = [
+                    word if _COMMA.fullmatch(word) is None else word.replace(",", ".")
+                    for word in words
+                ]
             if self.kind != "word":
                 self._parts.append(words)
                 return
@@ -231,11 +247,14 @@ class Column:
         return self._with_gaps(self._plain_numbers(cells, rows))
 
     def _plain_numbers(self, cells: Sequence[str], rows: Sequence[int]) -> Array:
-        plain = "".join(cells)
+        plain = "\n".join(cells)
         # Python would also take 1_000 and digits of other scripts.
         if plain.isascii() and "_" not in plain:
+            texts = cells
+            if self.form.decimal == "," and plain.count("\n") == len(cells) - 1:
+                texts = plain.replace(".", "?").replace(",", ".").split("\n")
             try:
-                values = np.array(list(map(float, cells)))
+                values = np.array(list(map(float, texts)))
             except ValueError:
                 pass
             else:
@@ -247,9 +266,12 @@ class Column:
         text = cell.strip()
         if self.kind == "gaps" and text.lower() in self.form.missing:
             return math.nan
-        if text.isascii() and "_" not in text:
+        plain = text
+        if self.form.decimal == ",":
+            plain = text.replace(".", "?").replace(",", ".")
+        if plain.isascii() and "_" not in plain:
             try:
-                value = float(text)
+                value = float(plain)
             except ValueError:
                 pass
             else:
@@ -260,9 +282,21 @@ class Column:
     def error(self, row: int, cell: str) -> DataError:
         """Error about a cell that does not hold what it must."""
         shown = repr(cell if len(cell) <= 40 else cell[:40] + "…") if cell else "an empty cell"
+        remedy = self._remedy(cell.strip()) if self.kind in ("number", "gaps") else ""
         return DataError(
-            f"{self.file}: row {row}, column {self.name}: {shown}; expected {_EXPECTED[self.kind]}"
+            f"{self.file}: row {row}, column {self.name}: {shown}; expected "
+            f"{_EXPECTED[self.kind]}{remedy}"
         )
+
+    def _remedy(self, text: str) -> str:
+        """What to do about a cell that is no number."""
+        if self.form.decimal == "," and "." in text and _POINT.fullmatch(text):
+            return "; numbers of this file have decimal commas (`decimal`)"
+        if _COMMA.fullmatch(text):
+            return "; `decimal` says that numbers have decimal commas"
+        if _THOUSANDS.fullmatch(text):
+            return "; thousands must not be separated"
+        return ""
 
 
 def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 
-__all__ = ["MISSING", "PLAIN", "TextForm"]
+__all__ = ["DELIMITERS", "MISSING", "PLAIN", "TextForm"]
 
 #: What stands for a missing number in any file, in lower case.
 MISSING = frozenset(
@@ -17,7 +17,8 @@ MISSING = frozenset(
     )
 )
 
-_DELIMITERS = (",", ";", "\t", "|", " ")
+#: What may separate cells.
+DELIMITERS = (",", ";", "\t", "|", " ")
 _DECIMALS = (".", ",")
 _COMMENT = re.compile(r"[#%!/*$&@~^:]{0,2}")
 
@@ -55,17 +56,12 @@ class TextForm:
     columns: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
-        if self.delimiter is not None and self.delimiter not in _DELIMITERS:
+        if self.delimiter is not None and self.delimiter not in DELIMITERS:
             raise ValueError(
                 f"delimiter: must be a comma, semicolon, tab, '|' or blank, got {self.delimiter!r}"
             )
         if self.decimal is not None and self.decimal not in _DECIMALS:
             raise ValueError(f"decimal: must be '.' or ',', got {self.decimal!r}")
-        if self.decimal == self.delimiter == ",":
-            raise ValueError(
-                "decimal: commas cannot be in numbers and separate cells as well; "
-                "`delimiter` says what separates cells that are quoted"
-            )
         if not _COMMENT.fullmatch(self.comment):
             raise ValueError(f"comment: must be one or two marks as '#', got {self.comment!r}")
         for name in ("na", "columns"):

@@ -8,7 +8,6 @@ from fuzzytrack.io.text_form import MISSING, TextForm
     [
         ({"delimiter": "x"}, "delimiter: must be a comma, semicolon, tab, .* got 'x'"),
         ({"decimal": "'"}, 'decimal: must be .* got "\'"'),
-        ({"decimal": ",", "delimiter": ","}, "decimal: commas cannot be in numbers and"),
         ({"comment": "12"}, "comment: must be one or two marks as '#', got '12'"),
         ({"na": "null"}, "na: must be several texts, got 'null'"),
         ({"columns": "t"}, "columns: must be several texts"),
