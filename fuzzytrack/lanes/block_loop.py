@@ -146,7 +146,7 @@ def _run(
     step: int, steady: int, apart: int, results: bool, elapsed: bool, places: Any,
     output_rows: Any, b: Any, unwanted: Any, since: Any, missed: Any, saved: Any, n_steps: int,
     lanes: int, first: int, last: int, plots: Any, times: Any, sigmas: Any, time_strides: Any,
-    sigma_strides: Any, states: Any, outputs: Any,
+    sigma_strides: Any, states: Any, outputs: Any, memories: Any,
 ) -> int:  # fmt: skip
     """Run the lanes from `first` to before `last` of a job over all time steps.
 
@@ -158,7 +158,7 @@ def _run(
     """
     (
         n_axes, gain_sets, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row,
-        plots_row,
+        plots_row, memory_row,
     ) = places  # fmt: skip
     use_wide_vectors()
     predicted, infinite, common = outputs[0], 0, time_strides[1] == 0
@@ -216,6 +216,11 @@ def _run(
                 for r in range(3 * n_axes):
                     _copy_out(b, shown + r, states, (now + r) * lanes + begin, 1, count)
             _restore(b, restored, missed, found, saved)
+            if len(memories):
+                width = state - memory_row
+                for r in range(width):
+                    place = (k * lanes + begin) * width + r
+                    _copy_out(b, memory_row + r, memories, place, width, count)
 
             if whole & common:
                 together = k
@@ -280,7 +285,8 @@ def _one_step(fill: Callable[..., None]) -> Callable[..., int]:
         sigma: Any, new: Any,
     ) -> int:  # fmt: skip
         (
-            n_axes, _, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row, _
+            n_axes, _, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row, _,
+            _,
         ) = places  # fmt: skip
         lanes = old.shape[1]
         before, after = old.reshape(-1), new.reshape(-1)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BLOCK", "GAINS", "OUTPUTS", "Rows", "aligned"]
+__all__ = ["BLOCK", "GAINS", "MEMORY", "OUTPUTS", "Rows", "aligned"]
 
 #: Number of lanes of a block, and of numbers between the rows of its buffer: a multiple of two
 #: vectors of 64 bytes, also in single precision, but no power of two, at which distance rows would
@@ -20,6 +20,10 @@ GAINS = ("alpha", "beta", "gamma")
 
 #: Names of the outputs of a run, in the order of the compiled loops.
 OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "innovation", *GAINS)
+
+#: Name of one more output, which a run gives only if it is asked for: the memory of each lane after
+#: each step, from which variances are computed.
+MEMORY = "memory"
 
 
 @dataclass(frozen=True)

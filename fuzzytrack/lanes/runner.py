@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.kernels.compile import entry_point
-from fuzzytrack.lanes.layout import BLOCK, GAINS, OUTPUTS, Rows, aligned
+from fuzzytrack.lanes.layout import BLOCK, GAINS, MEMORY, OUTPUTS, Rows, aligned
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.reprs import summary
 
@@ -135,7 +135,9 @@ class Runner:
             The lanes after the last step.
         outputs : dict of ndarray
             Of `keep`: predicted, filtered, velocity, acceleration, innovation, shaped as `plots`,
-            and alpha, beta, gamma, shape (n_steps, lanes), or as `plots` if axes have their own.
+            and alpha, beta, gamma, shape (n_steps, lanes), or as `plots` if axes have their own;
+            and memory, shape (n_steps, lanes, n_memory), after a missed plot that of the last one
+            if time counts from plot to plot.
 
         Raises
         ------
@@ -156,6 +158,8 @@ class Runner:
 
     def _output(self, name: str, plots: NDArray[Any], given: NDArray[Any] | None) -> NDArray[Any]:
         """Array for an output: one that was given, if it has the size, or a new one."""
+        if name == MEMORY:
+            return np.empty((*plots.shape[:2], self.rows.n_memory), plots.dtype)
         # Gains that all axes of a lane share have no axis for them.
         shared = name in GAINS and self.rows.gain_sets == 1
         shape = plots.shape[:2] if shared else plots.shape
@@ -233,15 +237,21 @@ class Runner:
         n_kept, results = rows.kept, slice(rows.predicted, rows.last_time)
         scratch = [0.0] * (rows.total - n_kept)
         trace = np.empty((n_steps, count, rows.last_time - rows.predicted))
+        outputs = dict(outputs)
+        memories, memory = outputs.pop(MEMORY, None), slice(rows.memory, rows.state)
         for lane in range(count):
             b = after[:, lane].tolist() + scratch
-            history = []
+            history, remembered = [], []
             for t, row in zip(all_times[lane], given[:, lane].tolist(), strict=True):
                 step(b, t, row)
                 history.append(b[results])
+                if memories is not None:
+                    remembered.append(b[memory])
             if history:
                 trace[:, lane] = history
                 after[:, lane] = b[:n_kept]
+            if remembered and memories is not None:
+                memories[:, lane] = remembered
         for name, output in outputs.items():
             column = rows.shown(name) - rows.predicted
             part = trace[:, :, column : column + rows.width(name)]
@@ -265,6 +275,7 @@ class Runner:
             _strides(times.shape, (n_steps, count)), _strides(sigmas.shape, plots.shape),
             after.reshape(-1),
             tuple(outputs[n].reshape(-1) if n in outputs else unwanted for n in OUTPUTS),
+            outputs[MEMORY].reshape(-1) if MEMORY in outputs else unwanted,
         )  # fmt: skip
         results = self._writes_results(outputs)
         # A single step is never steady, so a stream of plots does not wait for its compilation.
@@ -294,14 +305,14 @@ class Runner:
         places = (
             rows.n_axes, rows.gain_sets, rows.state, rows.results,
             rows.now if keeps else rows.position, rows.now, rows.last_time, self.restored,
-            rows.plot, rows.sigma, rows.dt, rows.plots,
+            rows.plot, rows.sigma, rows.dt, rows.plots, rows.memory,
         )  # fmt: skip
         return places, tuple((rows.shown if keeps else rows.output)(name) for name in OUTPUTS)
 
     def _writes_results(self, keep: Iterable[str]) -> bool:
         """Whether the steady function has to write results into the buffer for some outputs."""
         in_state = () if self.program.keeps_state else ("filtered", "velocity", "acceleration")
-        return bool({*keep} - {"predicted", *in_state})
+        return bool({*keep} - {"predicted", MEMORY, *in_state})
 
     def room(self, dtype: type) -> tuple[NDArray[Any], ...]:
         """Arrays that the compiled loop works in, for one thread.

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import Location, PluginError, TrackWarning
-from fuzzytrack.lanes.layout import Rows
+from fuzzytrack.lanes.layout import MEMORY, Rows
 from fuzzytrack.lanes.plots import (
     PlotLayout,
     as_plots,
@@ -30,9 +30,10 @@ from fuzzytrack.lanes.runner import InfinitePlotError, Runner
 from fuzzytrack.lanes.start import CORRECT_RETURNS, CORRECT_TAKES, single_axis_step
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.trackers.compiled_step import CompiledStep
+from fuzzytrack.trackers.filtered_variance import filtered_variance
 from fuzzytrack.trackers.output_arrays import Out, OutputArrays
 from fuzzytrack.trackers.prediction import Prediction
-from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.result import ON_REQUEST, TrackResult, checked_keep
 from fuzzytrack.trackers.runners import runner
 from fuzzytrack.trackers.state import TrackState, check_rows
 from fuzzytrack.trackers.time_check import WRONG_GAINS, TrackTimes
@@ -123,7 +124,8 @@ class LaneTracker(ABC):
         keep : sequence of str, optional
             Outputs to keep in the result, from `fuzzytrack.trackers.result.KEPT`: predicted,
             filtered, velocity, acceleration, innovation, gains. Unless given, what is in `out`, or
-            without `out` all of it. Less is faster, and takes less memory.
+            without `out` all of it. Less is faster, and takes less memory. If it is named here,
+            position_variance is kept too.
         threads : int, optional
             Threads that share the tracks of a large job; all processors unless given. The numbers
             do not depend on it.
@@ -177,7 +179,11 @@ class LaneTracker(ABC):
         >>> result.filtered is filtered
         True
         """
-        arrays = OutputArrays.of(out, keep)
+        names = None if keep is None else checked_keep(keep)
+        variances = names is not None and "position_variance" in names
+        if names is not None:
+            names = tuple(name for name in names if name not in ON_REQUEST)
+        arrays = OutputArrays.of(out, names)
         _check_threads(threads)
         before = _time_of(state)
         plots, times = as_plots(z, dtype), as_times(t, before)
@@ -197,7 +203,7 @@ class LaneTracker(ABC):
                 layout.to_lanes(plots),
                 layout.times_to_lanes(times),
                 sigmas,
-                keep=arrays.parts,
+                keep=(*arrays.parts, MEMORY) if variances else arrays.parts,
                 threads=threads,
                 into=arrays.arrays,
             )
@@ -209,7 +215,17 @@ class LaneTracker(ABC):
         last = state
         if len(plots):
             last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
-        result = TrackResult.of(times, plots, last, arrays.results(raw, layout))
+        memories = raw.pop(MEMORY, None)
+        results = arrays.results(raw, layout)
+        if memories is not None:
+            noise = sigmas if self.sigma_w is None else np.full((1, 1, 1), self.sigma_w)
+            variance = filtered_variance(
+                self.prediction_variance, memories, layout.to_lanes(plots),
+                layout.times_to_lanes(times), noise, None if state is None else state.lanes,
+                core.rows, self.missed == "elapsed",
+            )  # fmt: skip
+            results["position_variance"] = layout.from_lanes(variance)
+        result = TrackResult.of(times, plots, last, results)
         if self.one_recursion and "gains" in result.kept:
             between = TrackTimes.of(times, plots, self.coupled, self.missed)
             if between is not None and between.are_wrong_for(result.gains):
@@ -326,6 +342,19 @@ class LaneTracker(ABC):
             axis or its axes have it in common, (lanes,).
         """
         return np.nan
+
+    def knows_variance(self, n_axes: int) -> bool:
+        """Whether the tracker has the variance of its positions, see `prediction_variance`.
+
+        Parameters
+        ----------
+        n_axes : int
+            Axes of the plots.
+        """
+        t = np.arange(4.0)
+        z = np.repeat(t[:, None], n_axes, axis=1)
+        found = self.run(t, z, 1.0, keep=("position_variance",)).position_variance
+        return bool(np.isfinite(found[-1]).all())
 
     def compile(self, n_axes: int = 1) -> None:
         """Compile now what `run` compiles when a job is large, and make `step` run compiled.

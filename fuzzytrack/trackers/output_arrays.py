@@ -158,7 +158,7 @@ def _shared(gains: Gains) -> bool:
 
 def _by_name(out: Any) -> dict[str, Any]:
     if isinstance(out, TrackResult):
-        return {name: getattr(out, name) for name in out.kept}
+        return {name: getattr(out, name) for name in out.kept if name in KEPT}
     if isinstance(out, Mapping):
         return dict(out)
     raise TypeError(

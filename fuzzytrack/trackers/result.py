@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.state import Gains, TrackState
 
-__all__ = ["KEPT", "TrackResult", "checked_keep"]
+__all__ = ["KEPT", "ON_REQUEST", "TrackResult", "checked_keep"]
 
 
 #: Outputs that a run can keep.
 KEPT = ("predicted", "filtered", "velocity", "acceleration", "innovation", "gains")
+#: Outputs that a run keeps only if they are named.
+ON_REQUEST = ("position_variance",)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,6 +46,9 @@ class TrackResult:
         The gains used; NaN where none were.
     state : TrackState
         State after the last step, from which a run can continue; None if there was no step.
+    position_variance : ndarray
+        Variance of the filtered position (m²), as the tracker has it; NaN where it has none. Only
+        if it is named in `keep`.
     """
 
     time: Array
@@ -60,7 +65,7 @@ class TrackResult:
     def of(
         cls, time: Array, measured: Array, state: TrackState | None, kept: Mapping[str, Any]
     ) -> TrackResult:
-        """Result that holds some of `KEPT`, by their names."""
+        """Result that holds some of `KEPT` and `ON_REQUEST`, by their names."""
         result = cls.__new__(cls)
         fields = {"time": time, "measured": measured, "state": state, **kept}
         for name, value in fields.items():
@@ -69,7 +74,7 @@ class TrackResult:
 
     # Called only for what is not there.
     def __getattr__(self, name: str) -> Any:
-        if name in KEPT:
+        if name in KEPT + ON_REQUEST:
             raise AttributeError(f"{name} was not kept; run with keep=(..., {name!r})")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
@@ -79,7 +84,7 @@ class TrackResult:
     @property
     def kept(self) -> tuple[str, ...]:
         """Names of the outputs that were kept."""
-        return tuple(name for name in KEPT if name in self.__dict__)
+        return tuple(name for name in KEPT + ON_REQUEST if name in self.__dict__)
 
     @property
     def coasted(self) -> NDArray[np.bool_]:
@@ -88,12 +93,14 @@ class TrackResult:
 
 
 def checked_keep(keep: Sequence[str] | None, argument: str = "keep") -> tuple[str, ...]:
-    """Names of outputs to keep, in the order of `KEPT`; a single word is one of them.
+    """Names of outputs to keep, in the order of `KEPT`, then of `ON_REQUEST`.
+
+    A single word is one of them. As `out`, only those of `KEPT` can be given.
 
     Parameters
     ----------
     keep : sequence of str or None
-        None is all of them.
+        None is all of `KEPT`.
     argument : str
         Name of the argument, for messages.
 
@@ -106,7 +113,8 @@ def checked_keep(keep: Sequence[str] | None, argument: str = "keep") -> tuple[st
         return KEPT
     # A word is a sequence of letters.
     names = (keep,) if isinstance(keep, str) else tuple(keep)
+    allowed = KEPT if argument == "out" else KEPT + ON_REQUEST
     for name in names:
-        if name not in KEPT:
-            raise ValueError(f"{argument}: unknown {name!r}; out of {', '.join(KEPT)}")
-    return tuple(name for name in KEPT if name in names)
+        if name not in allowed:
+            raise ValueError(f"{argument}: unknown {name!r}; out of {', '.join(allowed)}")
+    return tuple(name for name in KEPT + ON_REQUEST if name in names)
