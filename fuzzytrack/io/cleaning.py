@@ -1,0 +1,466 @@
+"""Faults of real recordings: what is dropped, merged or divided, by rules that are counted.
+
+Copies of rows, equal times, clocks that start again, positions that are repeated or beyond any use,
+starts without a baseline, long times without a plot. The rules look back only, track by track, so
+that pieces of any size and streams decide alike.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.errors import DataError
+from fuzzytrack.io import cleaning_step
+from fuzzytrack.io.cleaning_step import OWN, clean_rows
+from fuzzytrack.io.equal_times import EqualTimes
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.plurals import counted
+from fuzzytrack.reprs import constructor_code
+
+__all__ = ["Cleaner", "Cleaning", "CleaningCounts", "Duplicates"]
+
+#: What is done about plots of a track at equal times.
+Duplicates = Literal["error", "first", "last", "mean"]
+
+# Without a limit of the user's, a track ends after so many times the mean of its intervals so far,
+# of which there must be some.
+_GAP_FACTOR, _GAP_INTERVALS = 100.0, 4
+# A fall of the time by more mean intervals is no local disorder.
+_DISORDER = 20.0
+# Compiling, or reading compiled code, takes longer than fewer rows in plain Python.
+_COMPILE_ABOVE = 100_000
+_PLAIN_BELOW = 2_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cleaning:
+    """Rules for the faults of a recording. Exact copies of a row are always dropped.
+
+    Parameters
+    ----------
+    duplicates : {"error", "first", "last", "mean"}
+        Plots of one track at equal times: an error, or which one stands for them. A row without a
+        plot does not count beside one with a plot.
+    stale : float, optional
+        A position that equals the one before to the last digit is repeated by the sensor, and a
+        missed plot, for so long after it was first seen (s); may be infinite.
+    least_step : float, optional
+        Plots that follow the first one of a track within this time (s) are missed plots: a velocity
+        from two plots needs a baseline.
+    max_gap : float, "auto" or None
+        A longer time without a plot (s) ends the track, and the next plot begins a new segment of
+        it; None never does. "auto" is 100 times the mean of the intervals of the track so far, from
+        the fourth on.
+    max_coast : float, optional
+        Rows without a plot that are later than this after the last plot (s) are dropped.
+    wrap : float, "auto" or None
+        Period after which the clock starts again (s). "auto" recognizes midnight, the end of the
+        week, and counters of 32 bits in milliseconds or microseconds; with None a time that falls
+        is an error.
+    fill_limit : float
+        Greater magnitudes than this stand for no position, as 9.97e36 does, and are missed plots.
+
+    Raises
+    ------
+    ValueError
+        If a value is none of those allowed.
+    """
+
+    duplicates: Duplicates = "error"
+    stale: float | None = None
+    least_step: float | None = None
+    max_gap: float | Literal["auto"] | None = "auto"
+    max_coast: float | None = None
+    wrap: float | Literal["auto"] | None = "auto"
+    fill_limit: float = 1e15
+
+    def __post_init__(self) -> None:
+        if self.duplicates not in get_args(Duplicates):
+            words = ", ".join(get_args(Duplicates))
+            raise ValueError(f"duplicates: {self.duplicates!r}; expected one of {words}")
+        positive = "a number of seconds above 0"
+        for name in ("stale", "least_step"):
+            self._check(name, positive, lambda value: value > 0)
+        for name in ("max_gap", "wrap"):
+            self._check(name, f"{positive}, or auto", lambda value: value > 0, "auto")
+        self._check("max_coast", "a number of seconds, at least 0", lambda value: value >= 0)
+        self._check("fill_limit", "a number above 0", lambda value: value > 0)
+        if self.wrap not in (None, "auto") and math.isinf(float(self.wrap)):
+            raise ValueError(f"wrap: {self.wrap}; expected {positive}, finite, or auto")
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
+
+    def _check(
+        self, name: str, wanted: str, fits: Callable[[float], bool], word: str | None = None
+    ) -> None:
+        value = getattr(self, name)
+        if value is None or value == word:
+            return
+        if isinstance(value, bool | str) or not fits(value):
+            raise ValueError(f"{name}: {value!r}; expected {wanted}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CleaningCounts:
+    """What the rules have changed so far; counts of several cleaners are added with ``+``.
+
+    Attributes
+    ----------
+    copies : int
+        Exact copies of rows that were dropped.
+    merged : int
+        Rows that were merged into another one of equal time.
+    fills : int
+        Rows with values beyond any use, which are missed plots.
+    stale : int
+        Plots that repeated the position before, which are missed plots.
+    delayed : int
+        Plots too soon after the first one of a track, which are missed plots.
+    segments : int
+        Tracks that began again after a long time without a plot.
+    coasted : int
+        Rows without a plot, long after the last one, that were dropped.
+    wraps : int
+        Times that a clock has started again, in any track.
+    period : float or None
+        Period of the clock (s), if it is known.
+    """
+
+    copies: int = 0
+    merged: int = 0
+    fills: int = 0
+    stale: int = 0
+    delayed: int = 0
+    segments: int = 0
+    coasted: int = 0
+    wraps: int = 0
+    period: float | None = None
+
+    def __add__(self, other: CleaningCounts) -> CleaningCounts:
+        names = [field.name for field in fields(self) if field.name != "period"]
+        sums = {name: getattr(self, name) + getattr(other, name) for name in names}
+        return CleaningCounts(**sums, period=self.period or other.period)
+
+    def sentences(self) -> tuple[str, ...]:
+        """What was changed, a phrase for each kind of fault that there was."""
+        said = []
+        for count, one, several in (
+            (self.copies, "exact copy of a row dropped", "exact copies of rows dropped"),
+            (self.merged, "row merged with another one of equal time",
+             "rows merged with others of equal time"),
+            (self.fills, "row with a value beyond any use, taken as missed",
+             "rows with values beyond any use, taken as missed"),
+            (self.stale, "repeated position taken as missed", "repeated positions taken as missed"),
+            (self.delayed, "plot too soon after the first of a track, taken as missed",
+             "plots too soon after the first of a track, taken as missed"),
+            (self.segments, "new segment after a long time without a plot",
+             "new segments after a long time without a plot"),
+            (self.coasted, "row long after the last plot dropped",
+             "rows long after the last plot dropped"),
+        ):  # fmt: skip
+            if count:
+                said.append(counted(count, one, several))
+        if self.wraps:
+            times = counted(self.wraps, "time")
+            said.append(f"the clock starts again after {self.period:.15g} s, {times}")
+        return tuple(said)
+
+
+class Cleaner:
+    """Applies the rules to a recording, piece by piece.
+
+    Parameters
+    ----------
+    cleaning : Cleaning
+        The rules.
+    period : float, optional
+        Period of the clock (s), where the form of the times tells it; see `Clock.period`.
+    column : str
+        Name of the column of time, for messages.
+    show : callable, optional
+        Text of a time (s), for messages; see `Clock.show`.
+
+    Notes
+    -----
+    Holds about 300 bytes for each track so far.
+    """
+
+    def __init__(
+        self,
+        cleaning: Cleaning,
+        period: float | None = None,
+        *,
+        column: str = "",
+        show: Callable[[float], str] | None = None,
+    ) -> None:
+        self.cleaning = cleaning
+        self._column, self._show = column, show or "{:.15g}".format
+        self._equal = None
+        if cleaning.duplicates != "error":
+            self._equal = EqualTimes(cleaning.duplicates)
+        self._rules = _rules(cleaning)
+        known = period if cleaning.wrap == "auto" else cleaning.wrap
+        self._clock = np.array([float(known or 0), math.nan])
+        self._counts = np.zeros(6, dtype=np.int64)
+        self._fills = 0
+        self._slot: dict[str, int] = {}
+        self._state = np.empty((0, 0))
+        self._files: list[str] = []
+        self._file = 0
+        self._rows = 0
+
+    @property
+    def counts(self) -> CleaningCounts:
+        """What the rules have changed so far."""
+        copies, stale, delayed, segments, coasted, wraps = self._counts.tolist()
+        period = float(self._clock[cleaning_step.PERIOD]) or None
+        equal = self._equal
+        return CleaningCounts(
+            copies=copies + (equal.copies if equal else 0),
+            merged=equal.merged if equal else 0,
+            fills=self._fills,
+            stale=stale,
+            delayed=delayed,
+            segments=segments,
+            coasted=coasted,
+            wraps=wraps,
+            period=period,
+        )
+
+    def advance(self, piece: Piece) -> Piece:
+        """Clean one more piece.
+
+        Parameters
+        ----------
+        piece : Piece
+
+        Returns
+        -------
+        Piece
+            Without the rows that are dropped, with segments. Where equal times are merged, the last
+            rows of each track come with a later piece, or from `finish`.
+
+        Raises
+        ------
+        DataError
+            If a time or a position is infinite, or the times of a track do not increase; names row,
+            time and remedies. Make a new cleaner then.
+        ValueError
+            If the number of axes changes.
+        """
+        _check_finite(piece)
+        piece = self._without_fills(piece)
+        return self._cleaned(piece if self._equal is None else self._equal.advance(piece))
+
+    def finish(self) -> Piece | None:
+        """Take the rows that were held back at the end of the recording, if there are any."""
+        held = None if self._equal is None else self._equal.finish()
+        return None if held is None or not len(held) else self._cleaned(held)
+
+    def _without_fills(self, piece: Piece) -> Piece:
+        with np.errstate(invalid="ignore"):
+            filled = np.abs(piece.plots) > self.cleaning.fill_limit
+        if not filled.any():
+            return piece
+        self._fills += int(filled.any(axis=1).sum())
+        return replace(piece, plots=np.where(filled, math.nan, piece.plots))
+
+    def _cleaned(self, piece: Piece) -> Piece:
+        if not len(piece):
+            return replace(piece, segments=np.zeros(0, dtype=np.int64))
+        if piece.file not in self._files:
+            self._files.append(piece.file)
+        self._file = self._files.index(piece.file)
+        slots = self._slots(piece)
+        # Copies in the order of C, which are written to.
+        time, plots = (np.array(a, dtype=np.float64, order="C") for a in (piece.time, piece.plots))
+        kept, segments = np.ones(len(piece), dtype=bool), np.zeros(len(piece), dtype=np.int64)
+        self._rows += len(piece)
+        large = self._rows > _COMPILE_ABOVE and len(piece) > _PLAIN_BELOW
+        run = self._compiled if large else self._plain
+        wrong = run(slots, time, piece.rows, plots, kept, segments)
+        if wrong >= 0:
+            raise self._time_error(piece, wrong, int(slots[wrong]))
+        cleaned = replace(piece, time=time, plots=plots, segments=segments)
+        return cleaned if kept.all() else cleaned.take(kept)
+
+    def _slots(self, piece: Piece) -> NDArray[np.int64]:
+        """Places of the tracks of the rows; room for the new ones."""
+        n_axes = piece.plots.shape[1]
+        width = OWN + 2 * n_axes
+        if not self._slot:
+            self._state = _new_tracks(0, width)
+        elif self._state.shape[1] != width:
+            before = (self._state.shape[1] - OWN) // 2
+            raise ValueError(f"plots: {n_axes} axes; the pieces before have {before}")
+        codes, slot = piece.ids.codes, self._slot
+        present = np.flatnonzero(np.bincount(codes, minlength=len(piece.ids.names)))
+        places = np.zeros(len(piece.ids.names), dtype=np.int64)
+        names = piece.ids.names
+        places[present] = [slot.setdefault(names[k], len(slot)) for k in present.tolist()]
+        if len(slot) > len(self._state):
+            more = max(len(slot) - len(self._state), len(self._state))
+            self._state = np.concatenate([self._state, _new_tracks(more, width)])
+        return places[codes]
+
+    # ---------------------------------------------------------------- the rows
+
+    def _plain(
+        self,
+        slots: NDArray[np.int64],
+        time: Array,
+        rows: NDArray[np.int64],
+        plots: Array,
+        kept: NDArray[np.bool_],
+        segments: NDArray[np.int64],
+    ) -> int:
+        """Run over lists, which plain Python reads faster than arrays."""
+        # Only the tracks of these rows: there may be many others.
+        present, own = np.unique(slots, return_inverse=True)
+        lists = [values.ravel().tolist() for values in (time, plots, kept, segments)]
+        tracks, clock = self._state[present].ravel().tolist(), self._clock.tolist()
+        counts = self._counts.tolist()
+        wrong = clean_rows(
+            own.tolist(), lists[0], rows.tolist(), lists[1], plots.shape[1], self._file,
+            self._rules.tolist(), clock, tracks, counts, lists[2], lists[3],
+        )  # fmt: skip
+        for values, found in zip((time, plots, kept, segments), lists, strict=True):
+            values.ravel()[:] = found
+        self._state[present] = np.reshape(tracks, (len(present), -1))
+        self._clock[:], self._counts[:] = clock, counts
+        return wrong
+
+    def _compiled(
+        self,
+        slots: NDArray[np.int64],
+        time: Array,
+        rows: NDArray[np.int64],
+        plots: Array,
+        kept: NDArray[np.bool_],
+        segments: NDArray[np.int64],
+    ) -> int:
+        return _compiled_rows()(
+            slots, time, np.ascontiguousarray(rows, dtype=np.int64), plots.ravel(), plots.shape[1],
+            self._file, self._rules, self._clock, self._state.ravel(), self._counts, kept,
+            segments,
+        )  # fmt: skip
+
+    # ---------------------------------------------------------------- messages
+
+    def _time_error(self, piece: Piece, place: int, slot: int) -> DataError:
+        """Error about the time of a row that is not later than that of the row before."""
+        track = self._state[slot]
+        id = piece.ids[place]
+        whose = f" (id {id!r})" if id else ""
+        before = f"row {int(track[cleaning_step.ROW])}"
+        file = self._files[int(track[cleaning_step.FILE])]
+        if file != piece.file:
+            before += f" of {file}"
+        time = float(piece.time[place])
+        turned = float(track[cleaning_step.TURNS] * self._clock[cleaning_step.PERIOD])
+        fall = float(track[cleaning_step.TIME]) - (time + turned)
+        if fall == 0:
+            what = _repeats(piece, place, before, bool(id))
+        else:
+            what = (
+                f"is earlier than {self._show(time + fall)} in {before}; expected increasing times"
+                f"{self._remedies(fall, track, bool(id))}"
+            )
+        where = f"{_where(piece, place)}{self._column and f', column {self._column}'}"
+        return DataError(f"{where}: time {self._show(time)}{whose} {what}")
+
+    def _remedies(self, fall: float, track: Array, identified: bool) -> str:
+        intervals = track[cleaning_step.INTERVALS]
+        mean = track[cleaning_step.SUM] / intervals if intervals else 0.0
+        remedies = "; `sort` puts them in order"
+        if not identified:
+            remedies += ", and `id` names the column that distinguishes tracks"
+        if fall > _DISORDER * mean:
+            remedies += (
+                f"; if its clock starts again (it falls by {fall:.15g} s), `wrap` is its period"
+            )
+        return remedies
+
+
+def _repeats(piece: Piece, place: int, before: str, identified: bool) -> str:
+    """What is wrong with a time that equals the one before, and what to do."""
+    cells, codes = piece.time_cells, piece.ids.codes
+    earlier = np.flatnonzero(codes[:place] == codes[place])
+    if cells is not None and len(earlier):
+        one, other = str(cells[earlier[-1]]).strip(), str(cells[place]).strip()
+        if _differ(one, other):
+            return (
+                f"in the cell {other} and {one} in {before} are too close to tell apart in double "
+                "precision; expected times further apart"
+            )
+    # Several tracks in one file look like this when their identities are not read.
+    mend = "" if identified else "; if these are several tracks, name the column of their id (`id`)"
+    return (
+        f"repeats that of {before}; expected times that differ, or `duplicates` to say which plot "
+        f"counts{mend}"
+    )
+
+
+def _differ(one: str, other: str) -> bool:
+    """Whether two cells of equal times are different times for certain."""
+    from decimal import Decimal, InvalidOperation
+
+    try:
+        return Decimal(one) != Decimal(other)
+    except InvalidOperation:
+        return False
+
+
+@cache
+def _compiled_rows() -> Callable[..., int]:
+    from fuzzytrack.kernels.compile import compiled
+
+    return compiled(clean_rows, nogil=True)
+
+
+def _rules(cleaning: Cleaning) -> Array:
+    def limit(value: Any, otherwise: float) -> float:
+        return otherwise if value is None else float(value)
+
+    gap = -1.0 if cleaning.max_gap == "auto" else limit(cleaning.max_gap, math.inf)
+    return np.array([
+        limit(cleaning.stale, -1.0),
+        limit(cleaning.least_step, 0.0),
+        gap,
+        limit(cleaning.max_coast, math.inf),
+        float(cleaning.wrap == "auto"),
+        _GAP_FACTOR,
+        _GAP_INTERVALS,
+    ])  # fmt: skip
+
+
+def _new_tracks(count: int, width: int) -> Array:
+    state = np.zeros((count, width))
+    state[:, cleaning_step.PLOT] = math.nan
+    state[:, OWN:] = math.nan
+    return state
+
+
+def _check_finite(piece: Piece) -> None:
+    for name, bad, wanted in (
+        ("time", ~np.isfinite(piece.time), "a finite number"),
+        ("plot", np.isinf(piece.plots).any(axis=1), "finite numbers, or NaN where missed"),
+    ):
+        if bad.any():
+            row = int(np.argmax(bad))
+            value = piece.time[row] if name == "time" else piece.plots[row]
+            raise DataError(f"{_where(piece, row)}: {name} {value}; expected {wanted}")
+
+
+def _where(piece: Piece, row: int) -> str:
+    place = f"row {piece.rows[row]}"
+    return f"{piece.file}: {place}" if piece.file else place

@@ -1,0 +1,522 @@
+"""Faults of recordings: what is dropped, merged, divided or refused, whatever the pieces."""
+
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.io import cleaning
+from fuzzytrack.io.cleaning import Cleaner, Cleaning, CleaningCounts
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.table import Words
+from fuzzytrack.simulation.sampling import PATTERNS
+
+NAN = math.nan
+
+
+def piece(time, plots=None, ids=None, *, cells=None, file="a.csv", first=2):
+    """Rows; the first one stands in line `first` of the file."""
+    time = np.asarray(time, dtype=float)
+    values = np.arange(len(time)) * 10.0 if plots is None else np.asarray(plots, dtype=float)
+    values = values[:, None] if values.ndim == 1 else values
+    words = [""] * len(time) if ids is None else list(ids)
+    names = tuple(dict.fromkeys(words))
+    codes = np.array([names.index(word) for word in words], dtype=np.int64)
+    rows = np.arange(first, first + len(time))
+    return Piece(Words(names, codes), time, values, rows, file, None, cells)
+
+
+def cleaned(rows, period=None, **rules):
+    """All rows as one piece, and the counts."""
+    cleaner = Cleaner(Cleaning(**rules), period)
+    out = [cleaner.advance(rows), cleaner.finish()]
+    return joined([part for part in out if part is not None]), cleaner.counts
+
+
+def joined(parts):
+    """Rows by track and line: id, time, plot and segment of each."""
+    rows = [
+        (part.ids[k], int(part.rows[k]), float(part.time[k]), tuple(part.plots[k].tolist()),
+         int(part.segments[k]))
+        for part in parts
+        for k in range(len(part))
+    ]  # fmt: skip
+    return sorted(rows, key=lambda row: row[:2])
+
+
+def lines(rows):
+    return [row[1] for row in rows]
+
+
+def times(rows):
+    return [row[2] for row in rows]
+
+
+def plots(rows):
+    return [row[3][0] for row in rows]
+
+
+def segments(rows):
+    return [row[4] for row in rows]
+
+
+def same(one, other):
+    """Equal to the last bit, NaN being equal to itself."""
+    return repr(one) == repr(other)
+
+
+# -------------------------------------------------------------------- nothing to do
+
+
+def test_clean_rows_stay_as_they_are():
+    given = piece([0, 1, 2.5], [[1, 2], [3, NAN], [5, 6]], ["b", "a", "b"])
+    cleaner = Cleaner(Cleaning())
+    out = cleaner.advance(given)
+    assert out.time.tolist() == given.time.tolist()
+    assert np.array_equal(out.plots, given.plots, equal_nan=True)
+    assert out.rows.tolist() == [2, 3, 4]
+    assert out.segments.tolist() == [0, 0, 0]
+    assert cleaner.counts == CleaningCounts()
+    assert cleaner.counts.sentences() == ()
+    assert cleaner.finish() is None
+
+
+@pytest.mark.parametrize("duplicates", ["error", "mean"])
+def test_no_rows_are_no_rows(duplicates):
+    cleaner = Cleaner(Cleaning(duplicates=duplicates))
+    for _ in range(2):
+        out = cleaner.advance(piece([]))
+        assert len(out) == len(out.segments) == 0
+    assert cleaner.finish() is None
+
+
+def test_what_comes_in_is_not_changed():
+    given = piece([0, 1], [[5, 1e20], [5, 6]])
+    before = (given.time.copy(), given.plots.copy())
+    Cleaner(Cleaning(stale=9, wrap=5), 5).advance(given)
+    assert np.array_equal(given.time, before[0])
+    assert np.array_equal(given.plots, before[1])
+
+
+# -------------------------------------------------------------------- copies and equal times
+
+
+def test_exact_copies_of_a_row_are_dropped():
+    rows = piece([0, 1, 1, 2, 0, 2], [0, 10, 10, 20, 5, 20], ["a", "a", "a", "a", "b", "a"])
+    out, counts = cleaned(rows)
+    assert lines(out) == [2, 3, 5, 6]
+    assert counts == CleaningCounts(copies=2)
+    assert counts.sentences() == ("2 exact copies of rows dropped",)
+    missed, counts = cleaned(piece([0, 0, 0], [[NAN, 1], [NAN, 1], [NAN, 1]]))
+    assert lines(missed) == [2]
+    assert counts.copies == 2
+
+
+def test_equal_times_are_an_error_that_names_both_rows_and_the_remedies():
+    with pytest.raises(
+        DataError,
+        match=r"^a\.csv: row 3, column t: time 0 repeats that of row 2; expected times that "
+        r"differ, or `duplicates` .*; if these are several tracks, name the .* \(`id`\)$",
+    ):
+        Cleaner(Cleaning(), column="t").advance(piece([0, 0]))
+    with pytest.raises(DataError, match=r"row 4: time 0 \(id 'a'\) repeats that of row 2; ") as got:
+        cleaned(piece([0, 0, 0], ids="aba"))
+    assert "several tracks" not in str(got.value)
+    cleaner = Cleaner(Cleaning(), show=lambda seconds: f"<{seconds:g}>")
+    cleaner.advance(piece([7]))
+    with pytest.raises(DataError, match=r"b\.csv: row 2: time <7> repeats that of row 2 of a\.csv"):
+        cleaner.advance(piece([7], [5], file="b.csv"))
+
+
+@pytest.mark.parametrize(
+    ("cells", "message"),
+    [
+        (["1e-30", "2e-30"], "in the cell 2e-30 and 1e-30 in row 2 are too close to tell apart"),
+        (["1.0", "1.00"], "repeats"),
+        (["12:00:00", "12:00:00.0"], "repeats"),
+        (np.array([1, 1]), "repeats"),
+    ],
+)
+def test_different_cells_of_equal_times_are_told(cells, message):
+    with pytest.raises(DataError, match=message):
+        cleaned(piece([5, 5], cells=cells))
+
+
+EQUAL = piece([0, 1, 1, 1, 1, 2, 2, 2], [0, NAN, 10, 11, 10, 20, 22, NAN])
+
+
+@pytest.mark.parametrize(
+    ("duplicates", "kept", "values"),
+    [
+        ("first", [2, 4, 7], [0, 10, 20]),
+        ("last", [2, 5, 8], [0, 11, 22]),
+        ("mean", [2, 3, 7], [0, 10.5, 21]),
+    ],
+)
+def test_plots_of_equal_times_become_one(duplicates, kept, values):
+    out, counts = cleaned(EQUAL, duplicates=duplicates)
+    assert lines(out) == kept
+    assert plots(out) == values
+    assert counts == CleaningCounts(copies=1, merged=4)
+    assert counts.sentences()[1] == "4 rows merged with others of equal time"
+
+
+def test_the_mean_is_one_of_each_axis_and_of_sigma():
+    rows = piece([0, 0, 0], [[1, NAN], [2, 5], [NAN, NAN]])
+    rows = replace(rows, sigma=np.array([[1.0, NAN], [2.0, 4.0], [NAN, NAN]]))
+    cleaner = Cleaner(Cleaning(duplicates="mean"))
+    assert len(cleaner.advance(rows)) == 0
+    out = cleaner.finish()
+    assert out.plots.tolist() == [[1.5, 5]]
+    assert out.sigma.tolist() == [[1.5, 4]]
+
+
+# -------------------------------------------------------------------- missed plots
+
+
+def test_values_beyond_any_use_are_missed():
+    out, counts = cleaned(piece([0, 1, 2], [[9.97e36, 1], [2, -1e16], [3, 1e15]]))
+    assert same([row[3] for row in out], [(NAN, 1.0), (2.0, NAN), (3.0, 1e15)])
+    assert counts == CleaningCounts(fills=2)
+    assert cleaned(piece([0], [1e16]), fill_limit=math.inf)[1].fills == 0
+
+
+def test_infinite_values_stay_an_error():
+    with pytest.raises(DataError, match=r"a\.csv: row 3: plot \[inf\]; expected finite numbers"):
+        cleaned(piece([0, 1], [0, math.inf]))
+    with pytest.raises(DataError, match="row 2: time nan; expected a finite number"):
+        cleaned(piece([NAN]))
+
+
+def test_positions_that_are_repeated_are_missed_for_a_while():
+    rows = piece(range(7), [0, 0, 0, 0, 5, NAN, 5])
+    assert cleaned(rows)[1].stale == 0
+    out, counts = cleaned(rows, stale=math.inf)
+    assert same(plots(out), [0.0, NAN, NAN, NAN, 5.0, NAN, NAN])
+    assert counts == CleaningCounts(stale=4)
+    # The position is a new plot when it has been repeated for two seconds.
+    assert same(plots(cleaned(rows, stale=2)[0]), [0.0, NAN, NAN, 0.0, 5.0, NAN, NAN])
+    # Both axes have to be the same.
+    both = piece(range(3), [[1, 2], [1, 3], [1, NAN]])
+    assert cleaned(both, stale=math.inf)[1].stale == 0
+
+
+def test_a_start_waits_for_a_baseline():
+    rows = piece([0, 0.01, 0.02, 1, 1.01, 2])
+    out, counts = cleaned(rows, least_step=0.2)
+    assert same(plots(out), [0.0, NAN, NAN, 30.0, 40.0, 50.0])
+    assert counts == CleaningCounts(delayed=2)
+    # After a gap the track starts again.
+    out, counts = cleaned(piece([0, 1, 50, 50.1, 51]), least_step=0.2, max_gap=10)
+    assert same(plots(out), [0.0, 10.0, 20.0, NAN, 40.0])
+    assert segments(out) == [0, 0, 1, 1, 1]
+    assert counts == CleaningCounts(delayed=1, segments=1)
+
+
+@given(st.lists(st.floats(1e-3, 10), min_size=1, max_size=20), st.floats(0.01, 5))
+def test_the_first_two_plots_are_never_closer_than_the_least_step(steps, least):
+    time = np.concatenate([[0], np.cumsum(steps)])
+    out, counts = cleaned(piece(time), least_step=least, max_gap=None)
+    there = [row[2] for row in out if row[3][0] == row[3][0]]
+    assert len(there) < 2 or there[1] - there[0] >= least
+    assert len(out) == len(there) + counts.delayed == len(time)
+
+
+# -------------------------------------------------------------------- gaps
+
+
+def voyages(step=10.0, plots_each=20, apart=21_600.0):
+    return np.concatenate([np.arange(plots_each) * step, apart + np.arange(plots_each) * step])
+
+
+def test_six_hours_after_intervals_of_ten_seconds_begin_a_new_segment():
+    out, counts = cleaned(piece(voyages()))
+    assert segments(out) == [0] * 20 + [1] * 20
+    assert counts == CleaningCounts(segments=1)
+    assert counts.sentences() == ("1 new segment after a long time without a plot",)
+    assert set(segments(cleaned(piece(voyages()), max_gap=None)[0])) == {0}
+
+
+def test_a_gap_that_is_given():
+    out, counts = cleaned(piece([0, 5, 10.1, 15.1, 100, 101]), max_gap=5)
+    assert segments(out) == [0, 0, 1, 1, 2, 2]
+    assert counts.segments == 2
+    # Each track by itself.
+    out, counts = cleaned(piece([0, 0, 9, 4, 13], ids="ababb"), max_gap=5)
+    assert [row[::4] for row in out] == [("a", 0), ("a", 1), ("b", 0), ("b", 0), ("b", 1)]
+
+
+def test_rows_without_a_plot_do_not_bridge_a_gap():
+    time = np.arange(0, 31.0)
+    values = np.where((time > 5) & (time < 25), NAN, time)
+    out, counts = cleaned(piece(time, values), max_gap=10)
+    # After ten seconds the track has ended; these rows belong to the next one.
+    assert segments(out) == [0] * 16 + [1] * 15
+    assert counts == CleaningCounts(segments=1)
+    bare, _ = cleaned(piece(time[values == values], values[values == values]), max_gap=10)
+    assert [row[2:] for row in out if row[3][0] == row[3][0]] == [row[2:] for row in bare]
+
+
+def test_a_track_that_ends_in_rows_without_a_plot_has_no_new_segment():
+    out, counts = cleaned(piece(range(9), [0, 1, 2, *[NAN] * 6]), max_gap=3)
+    assert segments(out) == [0] * 6 + [1] * 3
+    assert counts.segments == 0
+
+
+def test_rows_after_coasting_are_dropped():
+    values = [NAN, 0, 1, NAN, NAN, NAN, NAN, 7]
+    out, counts = cleaned(piece(range(8), values), max_coast=2)
+    assert lines(out) == [2, 3, 4, 5, 6, 9]
+    assert counts == CleaningCounts(coasted=2)
+    assert counts.sentences() == ("2 rows long after the last plot dropped",)
+    assert lines(cleaned(piece(range(8), values), max_coast=0)[0]) == [2, 3, 4, 9]
+    assert lines(cleaned(piece(range(8), values), max_coast=2, max_gap=1)[0]) == [2, 3, 4, 5, 6, 9]
+
+
+IRREGULAR = {
+    "regular": ("regular", ()),
+    "jitter": ("jitter", (0.4,)),
+    "1:10": ("alternate", (1, 10)),
+    "10:1": ("alternate", (10, 1)),
+    "near-duplicate pairs": ("alternate", (0.02, 0.98)),
+    "bursts": ("burst", (5, 20)),
+    "log-uniform": ("log-uniform", (0.1, 10)),
+}
+
+
+@pytest.mark.parametrize("name", IRREGULAR)
+@pytest.mark.parametrize("detection", [1.0, 0.4])
+def test_irregular_times_are_not_divided(name, detection):
+    pattern, numbers = IRREGULAR[name]
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        time = np.cumsum(PATTERNS[pattern].draw(rng, 200, *numbers))
+        time = time[rng.random(200) < detection]
+        assert cleaned(piece(time))[1].segments == 0
+
+
+def test_a_near_duplicate_at_the_start_divides_nothing():
+    for least_step in (None, 0.2):
+        rows = piece([0, 0.01, *range(1, 30)])
+        assert cleaned(rows, least_step=least_step)[1].segments == 0
+
+
+# -------------------------------------------------------------------- clocks that start again
+
+
+def wrapped(period, step, count=12, before=6):
+    """Raw times of a clock that starts again after `before` rows."""
+    return np.mod(np.arange(count) * step + period - before * step, period)
+
+
+@pytest.mark.parametrize(
+    ("period", "step"),
+    [(86_400, 4.0), (604_800, 10.0), (2**32 / 1e3, 0.1), (2**32 / 1e6, 0.25)],
+)
+def test_clocks_that_start_again_are_recognized(period, step):
+    out, counts = cleaned(piece(wrapped(period, step)))
+    assert np.diff(times(out)) == pytest.approx([step] * 11, abs=1e-9)
+    assert counts == CleaningCounts(wraps=1, period=period)
+    assert counts.sentences() == (f"the clock starts again after {period:.15g} s, 1 time",)
+
+
+@pytest.mark.parametrize(("rules", "known"), [({"wrap": 60}, None), ({}, 60)])
+def test_a_period_that_is_known_needs_no_intervals(rules, known):
+    out, counts = cleaned(piece([59.5, 0.5, 40, 1]), known, max_gap=None, **rules)
+    assert times(out) == [59.5, 60.5, 100, 121]
+    assert counts == CleaningCounts(wraps=2, period=60)
+
+
+def test_tracks_take_the_turn_of_the_row_before():
+    rows = piece([50, 58, 3, 5, 10, 20], ids="aabcab")
+    out, counts = cleaned(rows, wrap=60)
+    assert [row[::2] for row in out] == [
+        ("a", 50, 0), ("a", 58, 0), ("a", 70, 0), ("b", 63, 0), ("b", 80, 0), ("c", 65, 0),
+    ]  # fmt: skip
+    assert counts.wraps == 1
+    # An id that is used again a turn later, at an earlier time.
+    out, _ = cleaned(piece([20, 30, 59, 1, 15], ids="abbba"), wrap=60)
+    assert [row[2] for row in out if row[0] == "a"] == [20, 75]
+
+
+@pytest.mark.parametrize(
+    ("time", "rules", "message"),
+    [
+        ([0, 1, 2, 1.5], {}, r"row 5: time 1\.5 is earlier than 2 in row 4; expected increasing "
+         r"times; `sort` puts them in order, and `id` names the column that distinguishes tracks$"),
+        (wrapped(86_400, 4), {"wrap": None}, r"row 8: time 0 is earlier than 86396 in row 7.*; "
+         r"if its clock starts again \(it falls by 86396 s\), `wrap` is its period$"),
+        # A recording that was started again is no clock with a period.
+        ([*range(500), *range(9)], {}, "row 502: time 0 is earlier than 499 in row 501.*`wrap`"),
+        ([86_399, 0], {}, "row 3: time 0 is earlier than 86399 in row 2.*`wrap`"),
+        # Out of order about midnight.
+        ([86398, 86399, 0, 1, 86399.5, 2], {"wrap": 86_400}, "row 6.*86399.5 is earlier than"),
+        ([10, 20, 15], {"wrap": 60}, "row 4: time 15 is earlier than 20 in row 3"),
+        ([100, 5], {"wrap": 60}, "is earlier than"),
+    ],
+)  # fmt: skip
+def test_other_times_that_fall_are_an_error(time, rules, message):
+    with pytest.raises(DataError, match=message):
+        cleaned(piece(time), **rules)
+
+
+@settings(max_examples=60)
+@given(
+    st.sampled_from([60.0, 86_400.0]),
+    st.lists(st.integers(1, 14), min_size=2, max_size=40),
+    st.integers(0, 59),
+)
+def test_time_of_any_number_of_turns_is_restored(period, steps, start):
+    true = start + np.cumsum(steps).astype(float)
+    raw = np.mod(true, period)
+    out, counts = cleaned(piece(raw), wrap=period, max_gap=None)
+    assert np.diff(times(out)).tolist() == np.diff(true).tolist()
+    assert counts.wraps == true[-1] // period - true[0] // period
+
+
+# -------------------------------------------------------------------- any pieces, any way
+
+
+@st.composite
+def recordings(draw):
+    """Rows of some tracks with all kinds of faults; times in each track do not fall."""
+    count = draw(st.integers(0, 40))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32)))
+    codes = rng.integers(0, 3, count)
+    steps = rng.choice(
+        [0.0, 0.01, 1.0, 1.5, 30.0, 5000.0], count, p=[0.1, 0.1, 0.4, 0.3, 0.05, 0.05]
+    )
+    time = np.zeros(count)
+    for code in range(3):
+        time[codes == code] = np.cumsum(steps[codes == code])
+    values = rng.choice([0.0, 1.0, 2.0, NAN, 1e20], (count, 2), p=[0.3, 0.3, 0.2, 0.15, 0.05])
+    return piece(time, values, np.array(list("abc"))[codes])
+
+
+RULES = st.fixed_dictionaries(
+    {},
+    optional={
+        "duplicates": st.sampled_from(["first", "last", "mean"]),
+        "stale": st.sampled_from([1.0, math.inf]),
+        "least_step": st.just(0.2),
+        "max_gap": st.sampled_from([None, 20.0]),
+        "max_coast": st.sampled_from([0.0, 3.0]),
+    },
+)
+
+
+def run(rows, rules, cuts):
+    """Rows and counts, or the message of an error, when rows come in pieces."""
+    cleaner = Cleaner(Cleaning(**rules), column="t")
+    edges = [0, *sorted(cut % (len(rows) + 1) for cut in cuts), len(rows)]
+    try:
+        parts = [
+            cleaner.advance(rows.take(np.arange(a, b)))
+            for a, b in zip(edges[:-1], edges[1:], strict=True)
+        ]
+    except DataError as error:
+        return str(error)
+    last = cleaner.finish()
+    return joined([*parts, *([] if last is None else [last])]), cleaner.counts
+
+
+@settings(max_examples=300, deadline=None)
+@given(recordings(), RULES, st.lists(st.integers(0, 99), max_size=6))
+def test_any_cut_into_pieces_gives_the_same(rows, rules, cuts):
+    assert same(run(rows, rules, cuts), run(rows, rules, []))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.floats(0.1, 5), min_size=1, max_size=60), st.lists(st.integers(0, 99)))
+def test_any_cut_of_a_clock_that_starts_again_gives_the_same(steps, cuts):
+    raw = np.mod(86_390 + np.cumsum([3.0, 3.0, *steps]), 86_400)
+    rows = piece(raw, ids=["a", "b"] * (len(raw) // 2) + ["a"] * (len(raw) % 2))
+    assert same(run(rows, {}, cuts), run(rows, {}, []))
+
+
+@settings(max_examples=100, deadline=None)
+@given(recordings(), RULES)
+def test_what_is_not_counted_is_not_changed(rows, rules):
+    found = run(rows, rules, [])
+    if isinstance(found, str):
+        assert "repeats" in found
+        assert "duplicates" not in rules
+        return
+    out, counts = found
+    assert len(out) == len(rows) - counts.copies - counts.merged - counts.coasted
+    before = {int(line): position for line, position in zip(rows.rows, rows.plots, strict=True)}
+    if rules.get("duplicates") != "mean":
+        changed = [row for row in out if not same(np.array(row[3]), before[row[1]])]
+        assert len(changed) <= counts.fills + counts.stale + counts.delayed
+    for id in "abc":
+        mine = np.array([row[2] for row in out if row[0] == id])
+        assert (np.diff(mine) > 0).all()
+
+
+@pytest.mark.parametrize("rules", [
+    {}, {"wrap": 7.0}, {"stale": 1.0, "least_step": 0.2, "max_coast": 2.0, "max_gap": 20.0},
+])  # fmt: skip
+def test_compiled_and_plain_agree(rules, monkeypatch):
+    rng = np.random.default_rng(5)
+    codes = rng.integers(0, 4, 3000)
+    time = np.arange(3000) * 0.1 + np.where(np.arange(3000) > 2000, 5000, 0)
+    if "wrap" in rules:
+        time = np.mod(time, 7.0)
+    values = rng.choice([0.0, 1.0, NAN, 3.0], (3000, 2), p=[0.4, 0.3, 0.2, 0.1])
+    copies = np.repeat(np.arange(3000), rng.choice([1, 2], 3000, p=[0.9, 0.1]))
+    rows = piece(time[copies], values[copies], np.array(list("abcd"))[codes[copies]])
+    found = []
+    for above in (10**9, 0):
+        monkeypatch.setattr(cleaning, "_COMPILE_ABOVE", above)
+        # Positions side by side by axis, as data frames have them.
+        found.append(run(replace(rows, plots=np.asfortranarray(rows.plots)), rules, [2500]))
+    assert same(*found)
+    assert found[0][1].copies > 100
+
+
+def test_the_axes_do_not_change():
+    cleaner = Cleaner(Cleaning())
+    cleaner.advance(piece([0], [[1, 2]]))
+    with pytest.raises(ValueError, match=r"^plots: 1 axes; the pieces before have 2$"):
+        cleaner.advance(piece([1], [1]))
+
+
+# -------------------------------------------------------------------- values
+
+
+@pytest.mark.parametrize(
+    ("rules", "message"),
+    [
+        ({"duplicates": "drop"}, "^duplicates: 'drop'; expected one of error, first, last, mean$"),
+        ({"stale": 0}, "^stale: 0; expected a number of seconds above 0$"),
+        ({"least_step": NAN}, "^least_step: nan"),
+        ({"max_gap": "yes"}, "^max_gap: 'yes'; expected a number of seconds above 0, or auto$"),
+        ({"max_coast": -1}, "^max_coast: -1; expected a number of seconds, at least 0$"),
+        ({"wrap": math.inf}, "^wrap: inf"),
+        ({"fill_limit": True}, "^fill_limit: True"),
+    ],
+)
+def test_rules_that_are_none(rules, message):
+    with pytest.raises(ValueError, match=message):
+        Cleaning(**rules)
+
+
+def test_rules_are_values():
+    rules = Cleaning(max_gap=5.0, duplicates="mean")
+    assert pickle.loads(pickle.dumps(rules)) == rules
+    assert eval(repr(rules)) == rules
+    assert len({rules, Cleaning()}) == 2
+
+
+def test_counts_add_up():
+    total = CleaningCounts(copies=1, wraps=1, period=60) + CleaningCounts(copies=2, stale=3)
+    assert total == CleaningCounts(copies=3, stale=3, wraps=1, period=60)
+    assert total.sentences()[0] == "3 exact copies of rows dropped"
+    one = CleaningCounts(copies=1, merged=1, fills=1, stale=1, delayed=1, segments=1, coasted=1)
+    assert all(sentence.startswith("1 ") for sentence in one.sentences())
+    assert len(one.sentences()) == 7
