@@ -3,6 +3,7 @@
 import math
 import pickle
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -415,10 +416,7 @@ def run(rows, rules, cuts):
     cleaner = Cleaner(Cleaning(**rules), column="t")
     edges = [0, *sorted(cut % (len(rows) + 1) for cut in cuts), len(rows)]
     try:
-        parts = [
-            cleaner.advance(rows.take(np.arange(a, b)))
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
-        ]
+        parts = [cleaner.advance(rows.take(np.arange(a, b))) for a, b in pairwise(edges)]
     except DataError as error:
         return str(error)
     last = cleaner.finish()
