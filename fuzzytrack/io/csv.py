@@ -5,6 +5,7 @@ from __future__ import annotations
 import codecs
 import csv
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import BufferedReader, StringIO
@@ -19,7 +20,7 @@ from fuzzytrack.io.byte_stream import ByteStream, open_bytes
 from fuzzytrack.io.csv_blocks import block_parts, is_large, parser
 from fuzzytrack.io.csv_lines import CHUNK, Part, line_parts, text_lines
 from fuzzytrack.io.recognition import HEAD, encoding_of, recognize
-from fuzzytrack.io.table import Column, Kind, Table, Values, silent
+from fuzzytrack.io.table import Column, Kind, Table, Values, is_number, silent
 from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
@@ -156,29 +157,45 @@ def _not_text(source: ByteStream, error: UnicodeDecodeError) -> DataError:
 # -------------------------------------------------------------------- writing
 
 
+# What a spreadsheet takes for the beginning of a formula; with a character more, for text.
+_FORMULA = re.compile(r"\s*[=+\-@\t\r＝＋－＠]")
+
+
 @contextmanager
 def open_target(
-    draft: Path, types: Mapping[str, str], compact: bool, progress: Progress
+    draft: Path,
+    types: Mapping[str, str],
+    compact: bool,
+    progress: Progress,
+    quote_formulas: bool = False,
 ) -> Iterator[Callable[[Values], None]]:
     """Open a CSV file for writing; see `fuzzytrack.io.formats.Format`."""
+    quoted = _without_formulas if quote_formulas else list
     with open(draft, "x", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(types)
+        writer.writerow(quoted(list(types)))
 
         def write(values: Values) -> None:
             columns = [values[name] for name in types]
             length = len(columns[0])
             for start in range(0, length, CHUNK):
-                part = [_cells(column[start : start + CHUNK]) for column in columns]
+                part = [_cells(column[start : start + CHUNK], quoted) for column in columns]
                 writer.writerows(zip(*part, strict=True))
                 progress(min((start + CHUNK) / length, 1.0))
 
         yield write
 
 
-def _cells(values: Sequence[str] | NDArray[Any]) -> Sequence[Any]:
+def _without_formulas(words: Sequence[str]) -> list[str]:
+    """Words, with an apostrophe before those that a spreadsheet would run as a formula."""
+    return [f"'{word}" if _FORMULA.match(word) and not is_number(word) else word for word in words]
+
+
+def _cells(
+    values: Sequence[str] | NDArray[Any], quoted: Callable[[Sequence[str]], list[str]]
+) -> Sequence[Any]:
     if not isinstance(values, np.ndarray):
-        return values
+        return quoted(values)
     cells: list[Any] = values.tolist()
     for index in np.flatnonzero(np.isnan(values)).tolist():
         cells[index] = None

@@ -30,6 +30,7 @@ from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.tasks import Progress
 
 __all__ = [
+    "CSV",
     "PARQUET",
     "CsvReader",
     "Format",
@@ -44,6 +45,8 @@ __all__ = [
 
 #: Suffixes of Parquet files.
 PARQUET = (".parquet", ".pq")
+#: Suffixes of CSV files, plain and compressed.
+CSV = tuple(kind + packed for kind in (".csv", ".tsv") for packed in ("", ".gz", ".zst"))
 
 
 class Format(Protocol):
@@ -53,7 +56,13 @@ class Format(Protocol):
         """Raise a DataError if what the format needs is not installed."""
 
     def open_target(
-        self, draft: Path, types: Mapping[str, str], compact: bool, progress: Progress, /
+        self,
+        draft: Path,
+        types: Mapping[str, str],
+        compact: bool,
+        progress: Progress,
+        quote_formulas: bool,
+        /,
     ) -> AbstractContextManager[Callable[[Values], None]]:
         """Open a file that is written; the arguments are those of `table_writer`."""
 
@@ -62,7 +71,7 @@ class Format(Protocol):
 class CsvReader(Reader):
     """Reads CSV."""
 
-    suffixes = (".csv",)
+    suffixes = CSV
 
     def open_source(self, file: str) -> AbstractContextManager[Source]:
         """Open a file; see `fuzzytrack.io.csv`."""
@@ -196,6 +205,7 @@ def table_writer(
     inputs: tuple[PathLike, ...] = (),
     *,
     compact: bool = False,
+    quote_formulas: bool = False,
     progress: Progress | None = None,
 ) -> Iterator[Callable[[Values], None]]:
     """Write a CSV or Parquet file part by part; it appears whole or not at all.
@@ -210,6 +220,9 @@ def table_writer(
         Files that must not be overwritten.
     compact : bool
         Whether a small file is worth more time: in Parquet, numbers that repeat are stored once.
+    quote_formulas : bool
+        Whether, in CSV, an apostrophe is put before text that a spreadsheet would run as a formula,
+        as identities that begin with ``=``. Numbers stay as they are.
     progress : callable, optional
         Called with the share of a part that has been written.
 
@@ -226,7 +239,7 @@ def table_writer(
     found = _format_of_output(path)
     with (
         whole_file(path, inputs) as draft,
-        found.open_target(draft, types, compact, progress or silent) as write,
+        found.open_target(draft, types, compact, progress or silent, quote_formulas) as write,
     ):
         yield write
 

@@ -183,7 +183,11 @@ def words_of(values: Any) -> Words:
 
 @contextmanager
 def open_target(
-    draft: Path, types: Mapping[str, str], compact: bool, progress: Progress
+    draft: Path,
+    types: Mapping[str, str],
+    compact: bool,
+    progress: Progress,
+    quote_formulas: bool = False,
 ) -> Iterator[Callable[[Values], None]]:
     """Open a Parquet file for writing; see `fuzzytrack.io.formats.Format`.
 

@@ -13,7 +13,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.formats import PARQUET, open_table
+from fuzzytrack.io.formats import CSV, PARQUET, open_table
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Table, Words, no_rows, silent
@@ -93,23 +93,31 @@ class Recording:
 
 
 def recording_files(path: PathLike) -> tuple[str, ...]:
-    """Files of a recording: the file itself, or those of a folder that are Parquet, by name.
+    """Files of a recording: the file itself, or those of a folder, Parquet or CSV, by name.
 
     Raises
     ------
     DataError
-        If the folder holds none.
+        If the folder holds none, or some of both.
     OSError
         If it cannot be read.
     """
     if not os.path.isdir(path):
         return (os.fspath(path),)
-    files = sorted(file for file in Path(path).iterdir() if file.suffix.lower() in PARQUET)
     # Drafts of files that are being written begin with a dot.
-    found = tuple(str(file) for file in files if file.is_file() and file.name[0] != ".")
-    if not found:
-        raise DataError(f"{path}: holds no Parquet files ({', '.join(PARQUET)})")
-    return found
+    files = sorted(file for file in Path(path).iterdir() if file.is_file() and file.name[0] != ".")
+    found = {
+        name: tuple(str(file) for file in files if file.name.lower().endswith(suffixes))
+        for name, suffixes in (("Parquet", PARQUET), ("CSV", CSV))
+    }
+    if all(found.values()):
+        raise DataError(
+            f"{path}: holds {Path(found['Parquet'][0]).name} and {Path(found['CSV'][0]).name}; the "
+            "files of a folder must all be Parquet, or all CSV"
+        )
+    if not any(found.values()):
+        raise DataError(f"{path}: holds no Parquet and no CSV files")
+    return found["Parquet"] or found["CSV"]
 
 
 def find_columns(

@@ -29,6 +29,7 @@ __all__ = [
     "Values",
     "Words",
     "checked_names",
+    "is_number",
     "no_rows",
     "silent",
 ]
@@ -307,7 +308,7 @@ def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:
     DataError
         If they are numbers, or two are the same.
     """
-    if all(map(_is_numeric, names)):
+    if all(map(is_number, names)):
         raise DataError(f"{file}: row 1: holds numbers; expected the names of the columns")
     doubled = sorted({name for name in names if name and names.count(name) > 1})
     if doubled:
@@ -315,9 +316,10 @@ def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _is_numeric(name: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a number as Python writes it."""
     try:
-        float(name)
+        float(text)
     except ValueError:
         return False
     return True

@@ -158,7 +158,7 @@ def test_bad_options(fails, plots, monkeypatch, words, message):
 
 def test_no_file_and_folder_for_a_file(fails, tmp_path):
     assert fails("track", tmp_path / "a.csv").endswith("a.csv: No such file or directory")
-    assert fails("track", tmp_path).endswith("holds no Parquet files (.parquet, .pq)")
+    assert fails("track", tmp_path).endswith("holds no Parquet and no CSV files")
     assert "Missing argument 'FILE|DIR'" in fails("track")
 
 

@@ -1,3 +1,5 @@
+from csv import reader
+
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -84,3 +86,25 @@ def test_numbers_that_repeat_are_stored_once_if_the_file_is_to_be_compact(tmp_pa
             write(columns)
         found = pq.read_metadata(tmp_path / "a.pq").row_group(0)
         assert [found.column(k).has_dictionary_page for k in (0, 1)] == [True, compact]
+
+
+def test_formulas_are_quoted_on_request(tmp_path):
+    ids = ["=1+1", "+a", "-1", "-cmd", "@x", "\tx", " =x", "a=1", "1e5", ""]
+    columns = {"=id": ids, "x": np.arange(10) - 5.0}
+    types = {"=id": "string", "x": "float64"}
+    for quote_formulas, expected in (
+        (False, ids),
+        (True, ["'=1+1", "'+a", "-1", "'-cmd", "'@x", "'\tx", "' =x", "a=1", "1e5", ""]),
+    ):
+        path = tmp_path / f"{quote_formulas}.csv"
+        with table_writer(path, types, quote_formulas=quote_formulas) as write:
+            write(columns)
+        with open(path, newline="") as stream:
+            header, *rows = reader(stream)
+        assert [row[0] for row in rows] == expected
+        assert [float(row[1]) for row in rows] == list(range(-5, 5))
+        assert header[0] == ("'=id" if quote_formulas else "=id")
+    path = tmp_path / "a.parquet"
+    with table_writer(path, types, quote_formulas=True) as write:
+        write(columns)
+    assert pq.read_table(path)["=id"].to_pylist() == ids

@@ -170,13 +170,21 @@ def test_pieces_of_arrays():
 
 
 def test_files_of_a_folder(tmp_path):
-    for name in ("b.parquet", "a.PQ", "c.csv", ".d.part.parquet"):
+    for name in ("b.parquet", "a.PQ", "c.md", ".d.part.parquet"):
         (tmp_path / name).write_text("")
     (tmp_path / "e.parquet").mkdir()
     assert recording_files(tmp_path) == (str(tmp_path / "a.PQ"), str(tmp_path / "b.parquet"))
     assert recording_files("x.csv") == ("x.csv",)
-    with pytest.raises(DataError, match="holds no Parquet files"):
+    with pytest.raises(DataError, match="holds no Parquet and no CSV files"):
         recording_files(tmp_path / "e.parquet")
+    names = ["d.CSV", "f.csv.gz", "g.tsv"]
+    for name in names:
+        (tmp_path / "e.parquet" / name).write_text("")
+    folder = tmp_path / "e.parquet"
+    assert recording_files(folder) == tuple(str(folder / name) for name in names)
+    (tmp_path / "h.csv").write_text("")
+    with pytest.raises(DataError, match=r"holds a.PQ and h.csv; .* all be Parquet, or all CSV"):
+        recording_files(tmp_path)
 
 
 def test_files_that_do_not_agree(tmp_path):
