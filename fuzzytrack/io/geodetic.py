@@ -27,7 +27,7 @@ FAR = 500e3
 #: Cosine of the arc from the origin beyond which a place without altitude is dropped: 45°, 5000 km.
 FARTHEST = np.sqrt(0.5)
 
-#: Height in m beyond which an altitude is a value for "nothing measured".
+#: Distance in m from the ground beyond which an altitude or a position is no place on earth.
 HIGHEST = 1e9
 
 
@@ -161,7 +161,8 @@ class LocalFrame:
         Returns
         -------
         GeodeticPlaces
-            NaN for positions with NaN, and for those without up that are not above the earth.
+            NaN for positions with NaN or beyond ±1e9 m, and for those without up that are not above
+            the earth.
 
         Raises
         ------
@@ -174,6 +175,8 @@ class LocalFrame:
         places = np.asarray(position, dtype=np.float64)
         if places.ndim != 2 or places.shape[1] not in (2, 3):
             raise ValueError(f"`position`: shape {places.shape}; expected (n, 2) or (n, 3)")
+        beyond = (np.abs(places) > HIGHEST).any(axis=1, keepdims=True)
+        places = np.where(beyond, np.nan, places)
         east, north = places[:, 0], places[:, 1]
         level = on_the_earth(east, north, self.lat, self.lon, self.alt)
         if places.shape[1] == 2:
@@ -245,26 +248,27 @@ def on_the_earth(
     """
     pymap3d = _pymap3d()
     ellipsoid = pymap3d.Ellipsoid.from_name("wgs84")
-    east, north = np.asarray(east, dtype=np.float64), np.asarray(north, dtype=np.float64)
+    plane = np.stack([np.asarray(east, np.float64), np.asarray(north, np.float64)])
+    to_east, to_north = np.where((np.abs(plane) > HIGHEST).any(axis=0), np.nan, plane)
     lat, lon, alt = (
-        np.broadcast_to(np.asarray(v, np.float64), east.shape) for v in (lat, lon, alt)
+        np.broadcast_to(np.asarray(v, np.float64), to_east.shape) for v in (lat, lon, alt)
     )
     vertical = axes_on_earth(lat, lon)[..., 2, :]
     # The vertical line meets an ellipsoid with longer axes, which is the surface of this height
     # to within a few centimeters; the nearer root of the quadratic, without cancellation.
     major, minor = ellipsoid.semimajor_axis + alt, ellipsoid.semiminor_axis + alt
     stretch = 1 / np.stack([major, major, minor], axis=-1)
-    start = np.stack(pymap3d.enu2ecef(east, north, 0.0, lat, lon, alt), axis=-1) * stretch
+    start = np.stack(pymap3d.enu2ecef(to_east, to_north, 0.0, lat, lon, alt), axis=-1) * stretch
     way = vertical * stretch
     square, cross = np.sum(way**2, axis=-1), np.sum(way * start, axis=-1)
     excess = np.sum(start**2, axis=-1) - 1
     with np.errstate(invalid="ignore"):
         up = -excess / (cross + np.sqrt(cross**2 - square * excess))
     for _ in range(2):
-        found = pymap3d.enu2geodetic(east, north, up, lat, lon, alt)
+        found = pymap3d.enu2geodetic(to_east, to_north, up, lat, lon, alt)
         tilt = np.sum(axes_on_earth(found[0], found[1])[..., 2, :] * vertical, axis=-1)
         up = up - (found[2] - alt) / tilt
-    found = pymap3d.enu2geodetic(east, north, up, lat, lon, alt)
+    found = pymap3d.enu2geodetic(to_east, to_north, up, lat, lon, alt)
     return GeodeticPlaces(*(np.asarray(value, dtype=np.float64) for value in found))
 
 

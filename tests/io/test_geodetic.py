@@ -131,6 +131,25 @@ def test_impossible_places_are_marked_and_missed():
     assert wrong.impossible.all()
 
 
+anything = st.floats(allow_nan=True, allow_infinity=True)
+
+
+@given(frames, anything, anything, anything)
+def test_any_numbers_are_a_finite_position_or_a_missed_plot(frame, lat, lon, alt):
+    for found, known in (
+        (frame.to_local([lat], [lon]), [lat, lon]),
+        (frame.to_local([lat], [lon], [alt]), [lat, lon]),
+    ):
+        dropped = found.impossible[0] or found.too_far[0]
+        level = found.position[0, :2]
+        assert np.isfinite(level).all() == (not dropped and np.isfinite(known).all())
+        assert not np.isinf(found.position).any()
+    places = frame.to_geodetic([[lat, lon, alt]])
+    assert np.isnan(places.lat[0]) or -90 <= places.lat[0] <= 90
+    flat = frame.to_geodetic([[lat, lon]])
+    assert np.isnan(flat.lat[0]) or -90 <= flat.lat[0] <= 90
+
+
 def test_a_longitude_of_181_is_one():
     """AIS codes both coordinates; hurricane tracks count longitudes to 360."""
     found = LocalFrame(10.0, -179.0).to_local([10.0], [181.0])

@@ -111,6 +111,22 @@ def test_the_ends_of_what_is_possible():
     assert not poles.impossible.any()
 
 
+anything = st.floats(allow_nan=True, allow_infinity=True)
+
+
+@given(anything, anything, anything, st.floats(0, 1e15), st.floats(0, 1), st.floats(0, 1))
+def test_any_numbers_are_a_finite_position_or_a_missed_plot(r, a, e, sr, sa, se):
+    noise = {"sigma_range": sr, "sigma_azimuth": sa}
+    for plots, cells in (
+        (converted(r, a, **noise), [r, a]),
+        (converted(r, a, e, **noise, sigma_elevation=se), [r, a, e]),
+    ):
+        missed = plots.impossible[0] or np.isnan(cells).any()
+        shown = np.concatenate([plots.position.ravel(), plots.covariance.ravel()])
+        assert np.isnan(shown).all() if missed else np.isfinite(shown).all()
+        assert missed or (np.diagonal(plots.covariance[0]) >= 0).all()
+
+
 # -------------------------------------------------------------------- noise
 
 
