@@ -30,7 +30,8 @@ def relative_to_own_ship(
     own : array_like, shape (n, 2) or (n, 3), optional
         Own ship at the time of each plot: east, north and maybe up of the origin in m; with
         `frame`, latitude and longitude in degrees and maybe altitude in m. Without up or
-        altitude, it is at the height of the origin. Without `own`, it is at the origin.
+        altitude, it is at the height of the origin. For plots on one axis, that axis
+        serves. Without `own`, it is at the origin.
     heading : array_like, shape (n,) or a number, optional
         Direction of its bow in degrees clockwise from north.
     frame : LocalFrame, optional
@@ -57,7 +58,8 @@ def relative_to_own_ship(
         return plots
     places = np.asarray(own, dtype=np.float64)
     n = len(plots.position)
-    if places.shape not in ((n, 2), (n, 3)):
+    allowed = (2, 3) if frame is not None or plots.position.shape[1] > 1 else (1, 2, 3)
+    if places.shape not in [(n, axes) for axes in allowed]:
         raise ValueError(f"`own`: shape {places.shape}; expected ({n}, 2) or ({n}, 3)")
     if frame is not None:
         return _carried(plots, places, frame)

@@ -117,6 +117,12 @@ def test_one_axis_of_a_plot_may_be_missing():
     assert turned[1] == pytest.approx([2.0, -1.0])
 
 
+def test_plots_along_a_line():
+    plots = ConvertedPlots(np.array([[1.0], [2.0]]), None, np.zeros(2, dtype=bool))
+    assert relative_to_own_ship(plots, [[10.0], [np.nan]]).position[0] == 11.0
+    assert relative_to_own_ship(plots, [[10.0, 7.0]] * 2).position.ravel().tolist() == [11, 12]
+
+
 def test_own_ship_without_a_height_is_at_that_of_the_origin():
     frame = LocalFrame(60.0, 5.0, 250.0)
     plots = polar_to_cartesian([1e3] * 2, [1.0] * 2, [0.1] * 2)
