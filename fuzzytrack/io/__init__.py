@@ -1,5 +1,6 @@
 """Files of plots and tracks: CSV, and Parquet with the extra ``parquet``."""
 
+from fuzzytrack.io.cleaning import Cleaner, Cleaning, CleaningCounts
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import check_output, whole_file
@@ -15,9 +16,14 @@ from fuzzytrack.io.recording import (
     recording_files,
 )
 from fuzzytrack.io.table import Table, Words
+from fuzzytrack.io.times import Clock
 from fuzzytrack.io.track_formats import write_geo_tracks
 
 __all__ = [
+    "Cleaner",
+    "Cleaning",
+    "CleaningCounts",
+    "Clock",
     "Columns",
     "GeoTrack",
     "Piece",

@@ -194,32 +194,41 @@ class Clock:
         return self._slow(usable, rows, file, column)
 
     def show(self, seconds: float) -> str:
-        """A time as text.
+        """A time as text, in UTC as 2020-06-30T00:00:01.5Z if times are dates; else as its cell.
 
         Parameters
         ----------
         seconds : float
             Time of this clock (s).
-
-        Returns
-        -------
-        str
-            In UTC as 2020-06-30T00:00:01.5Z if times are dates; as a time of day; or as a number in
-            the unit of the cells.
         """
-        if self.form == "number" and not self.dated:
-            if not self.counted:
-                return f"{seconds * SCALES['s'] / self.scale:.15g}"
-            whole, part = divmod(self.origin + round(seconds * SCALES["s"]), self.scale)
-            places = len(str(self.scale)) - 1
-            return f"{whole}.{part:0{places}d}".rstrip("0").rstrip(".") if part else str(whole)
-        whole, part = divmod(self.origin + round(seconds * SCALES["s"]), SCALES["s"])
-        fraction = f".{part:09d}".rstrip("0") if part else ""
-        days, rest = divmod(whole, _DAY)
-        clock = f"{rest // 3600:02d}:{rest // 60 % 60:02d}:{rest % 60:02d}{fraction}"
-        if self.form == "time of day":
-            return clock
+        if not self.dated:
+            return self.as_cell(seconds)
+        days, clock = self._day_and_clock(seconds)
         return f"{np.datetime64(days, 'D')}T{clock}Z"
+
+    def as_cell(self, seconds: float) -> str:
+        """A time as text in the form of the cells: a number in their unit, a date, a time of day.
+
+        Parameters
+        ----------
+        seconds : float
+            Time of this clock (s).
+        """
+        if self.form == "iso":
+            return self.show(seconds)
+        if self.form == "time of day":
+            return self._day_and_clock(seconds)[1]
+        if not self.counted:
+            return f"{seconds * SCALES['s'] / self.scale:.15g}"
+        whole, part = divmod(self.origin + round(seconds * SCALES["s"]), self.scale)
+        return f"{whole}{_fraction(part, len(str(self.scale)) - 1)}"
+
+    def _day_and_clock(self, seconds: float) -> tuple[int, str]:
+        """Days since 1970, and time of day, of a time."""
+        whole, part = divmod(self.origin + round(seconds * SCALES["s"]), SCALES["s"])
+        days, rest = divmod(whole, _DAY)
+        clock = f"{rest // 3600:02d}:{rest // 60 % 60:02d}:{rest % 60:02d}{_fraction(part, 9)}"
+        return days, clock
 
     # ---------------------------------------------------------------- reading
 
@@ -337,6 +346,11 @@ def _size(first: Any) -> float:
 
 def _first_number(first: Any) -> float:
     return abs(next(islice(_numbers_in(first), 1), 0.0))
+
+
+def _fraction(part: int, places: int) -> str:
+    """Digits after the point, without zeros at the end."""
+    return f".{part:0{places}d}".rstrip("0") if part else ""
 
 
 def _error(cell: str, row: int, file: str, column: str, wanted: str) -> DataError:

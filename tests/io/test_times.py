@@ -316,6 +316,8 @@ def test_a_time_is_shown_as_it_was(offsets):
 def test_times_as_text(cells, how, shown):
     clock, found = read(cells, **how)
     assert list(map(clock.show, found)) == shown
+    if clock.form == "number" or "+" not in cells[0]:
+        assert [clock.as_cell(s).rstrip("Z") for s in found] == cells
 
 
 def test_only_times_since_1970_are_dated():
