@@ -10,6 +10,7 @@ LOWEST_TESTS ?= tests/test_public_names.py tests/cli/test_app.py tests/cli/test_
 	tests/plotting/test_surfaces.py tests/fuzzy/test_loading.py tests/fuzzy/test_system.py \
 	tests/fuzzy/test_membership.py tests/kernels tests/trackers/test_speed_paths.py
 FUZZ_COUNT ?= 1000000
+FUZZ_FILES ?= 100000
 BENCH_ARGS ?=
 
 BIN := $(VENV)/bin
@@ -84,8 +85,9 @@ docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; 
 	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
 
-fuzz: $(VENV)/.installed-test ## Try new random examples, and FUZZ_COUNT broken rule bases
+fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases, FUZZ_FILES files of each format
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
+	$(BIN)/python tests/fuzz_readers.py --count $(FUZZ_FILES)
 	HYPOTHESIS_PROFILE=free $(BIN)/python -m pytest $(PYTEST_ARGS) -m hypothesis
 
 bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)

@@ -222,7 +222,7 @@ def _chunk(task: tuple[int, int, int, bool]) -> Report:
     return run(seed, start, count)
 
 
-def _show(done: Report, count: int, started: float, last: bool) -> None:
+def show(done: Report, count: int, started: float, last: bool) -> None:
     elapsed = time.perf_counter() - started
     rate = done.total / elapsed
     left = (count - done.total) / rate if rate else 0.0
@@ -256,8 +256,8 @@ def main() -> int:
             done.add(report)
             if time.perf_counter() - shown > pause:
                 shown = time.perf_counter()
-                _show(done, options.count, started, last=False)
-    _show(done, options.count, started, last=True)
+                show(done, options.count, started, last=False)
+    show(done, options.count, started, last=True)
     print(
         f"slowest (CPU) {done.slowest * 1e3:.1f} ms (text {done.slowest_index}), "
         f"peak memory {done.peak_kib / 1024:.0f} MiB a process, "

@@ -29,9 +29,9 @@ _SHORTEST = 4
 _OTHERS = (3, 30, 31, 33, 252, 253)
 # libasterix copies all bytes that follow at each step; no record is longer.
 _RECORD = 4_096
-# Blocks that may be decoded in vain, so that time grows with the file, whatever it holds: so many,
-# and one more for so many bytes.
-_TRIALS, _BYTES_A_TRIAL = 64, 4_096
+# Bytes that may be decoded in vain, and one more for each that has been read: so time grows with
+# the file, whatever it holds.
+_IN_VAIN = 8_192
 _CAPTURES = (b"\xd4\xc3\xb2\xa1", b"\xa1\xb2\xc3\xd4", b"\x4d\x3c\xb2\xa1", b"\n\r\r\n")
 
 
@@ -103,13 +103,13 @@ def records(stream: IO[bytes], file: str, losses: Losses) -> Iterator[Record]:
         offset = bytes_of.offset
         place = f"byte {offset}"
         certain = end is not None and bytes_of.is_start(end)
-        if end is None or not (certain or vain < _TRIALS + offset // _BYTES_A_TRIAL):
+        if end is None or not (certain or end - start <= _IN_VAIN + offset - vain):
             losses.add("bytes that are no block", place, bytes_of.skip())
             continue
         category, body = bytes_of.data[start], bytes_of.data[start + 3 : end]
         found, used = decoder.decode(category, body)
         if not certain and (found is None or used < len(body)):
-            vain += 1
+            vain += used + _SHORTEST
             losses.add("bytes that are no block", place, bytes_of.skip())
             continue
         bytes_of.position = end
