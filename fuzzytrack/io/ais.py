@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from operator import xor
 from typing import IO, Any
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.byte_stream import ByteStream, open_bytes
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.readers import Reader
 from fuzzytrack.io.record_source import Losses, RecordSource, Row
@@ -70,11 +72,11 @@ class Ais(Reader):
             If it cannot be read.
         """
         messages = _import_pyais(file)
-        with open(file, "rb") as stream:
+        with open_bytes(file) as stream:
             losses = Losses()
             description = PlotDescription(time="time", id="id", geodetic=("lat", "lon"), wrap=None)
-            rows = _rows(stream, file, messages, losses)
-            yield RecordSource(stream, file, _TYPES, description, rows, losses)
+            rows = _rows(stream, messages, losses)
+            yield RecordSource(stream, _TYPES, description, rows, losses)
 
 
 def _import_pyais(file: str) -> Any:
@@ -87,10 +89,10 @@ def _import_pyais(file: str) -> Any:
     return messages
 
 
-def _rows(stream: IO[bytes], file: str, messages: Any, losses: Losses) -> Iterator[Row]:
+def _rows(stream: ByteStream, messages: Any, losses: Losses) -> Iterator[Row]:
     waiting = _Waiting(losses)
     timed = False
-    for number, line in enumerate(_lines(stream), 1):
+    for number, line in enumerate(_lines(io.BufferedReader(stream)), 1):
         found = _sentence(line, number, messages, losses)
         if found is None:
             continue
@@ -104,7 +106,7 @@ def _rows(stream: IO[bytes], file: str, messages: Any, losses: Losses) -> Iterat
             continue
         if not time:
             if not timed:
-                raise _no_time(file, number, losses)
+                raise _no_time(stream.file, number, losses)
             losses.add("positions without a time of reception", place)
             continue
         timed = True

@@ -11,13 +11,13 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
-from typing import IO, ClassVar
+from typing import ClassVar
 
-from fuzzytrack.errors import DataError
 from fuzzytrack.io.asterix_blocks import Record, import_asterix, records
 from fuzzytrack.io.asterix_plots import CATEGORIES, IDENTITIES, TEXTS, Cells
+from fuzzytrack.io.byte_stream import ByteStream, open_bytes
 from fuzzytrack.io.readers import Reader
-from fuzzytrack.io.record_source import Losses, RecordSource, Row
+from fuzzytrack.io.record_source import Losses, RecordSource, Row, no_plots
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["Asterix"]
@@ -72,28 +72,25 @@ class Asterix(Reader):
         OSError
             If it cannot be read.
         """
-        with open(file, "rb") as stream:
+        with open_bytes(file) as stream:
             losses = Losses()
-            plots = self._plots(stream, file, losses)
+            plots = self._plots(stream, losses)
             first = next(plots, None)
             if first is None:
-                why = "; ".join(losses.notes)
-                raise DataError(f"{file}: holds no plots of ASTERIX{': ' + why if why else ''}")
+                raise no_plots(stream.file, losses)
             record, cells = first
             types = {name: "text" if name in TEXTS else "number" for name in cells}
             rows = _rows(chain((first,), plots), tuple(types))
             description = CATEGORIES[record.category].description(types, "id" in types)
             remarks = [f"plots of category {record.category:03d} from source {cells['source']}"]
-            yield RecordSource(stream, file, types, description, rows, losses, remarks)
+            yield RecordSource(stream, types, description, rows, losses, remarks)
 
-    def _plots(
-        self, stream: IO[bytes], file: str, losses: Losses
-    ) -> Iterator[tuple[Record, Cells]]:
+    def _plots(self, stream: ByteStream, losses: Losses) -> Iterator[tuple[Record, Cells]]:
         """Records that are plots, all of the category, source and position of the first."""
         chosen: tuple[int, str, str] | None = None
         # Records that name no source have that of the one before.
         last: dict[int, str] = {}
-        for record in records(stream, file, losses):
+        for record in records(stream, losses):
             cells = CATEGORIES[record.category].cells(record.items)
             source = str(cells["source"] or last.get(record.category, "?"))
             cells["source"] = last[record.category] = source

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import IO, Any
+from typing import Any
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.byte_stream import ByteStream
 from fuzzytrack.io.record_source import Losses
 
 __all__ = ["CATEGORIES", "Record", "import_asterix", "records"]
@@ -69,15 +70,13 @@ def import_asterix(file: str) -> tuple[Any, Any]:
     return base, generated
 
 
-def records(stream: IO[bytes], file: str, losses: Losses) -> Iterator[Record]:
+def records(stream: ByteStream, losses: Losses) -> Iterator[Record]:
     """Decode the records of a file.
 
     Parameters
     ----------
-    stream : file
+    stream : ByteStream
         The open file.
-    file : str
-        Its name, for messages.
     losses : Losses
         Gets what cannot be decoded, and blocks of other categories.
 
@@ -90,12 +89,12 @@ def records(stream: IO[bytes], file: str, losses: Losses) -> Iterator[Record]:
     DataError
         If libasterix is not installed, or the file is a capture of packets.
     """
-    decoder = _Decoder(*import_asterix(file))
+    decoder = _Decoder(*import_asterix(stream.file))
     bytes_of = _Bytes(stream, decoder.known)
     if bytes_of.data[:4] in _CAPTURES:
         raise DataError(
-            f"{file}: is a capture of network packets (pcap); write the payload of its packets to "
-            "a file"
+            f"{stream.file}: is a capture of network packets (pcap); write the payload of its "
+            "packets to a file"
         )
     number = vain = 0
     while bytes_of.fill():
@@ -134,7 +133,7 @@ class _Bytes:
         The next one of these to be read.
     """
 
-    def __init__(self, stream: IO[bytes], known: frozenset[int]) -> None:
+    def __init__(self, stream: ByteStream, known: frozenset[int]) -> None:
         self._stream, self._known = stream, known
         self._before = 0
         self._ended = False

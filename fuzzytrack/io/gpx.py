@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
 from xml.parsers import expat
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.byte_stream import ByteStream, open_bytes
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.geo_track import GeoTrack, numbered
 from fuzzytrack.io.readers import Reader
@@ -57,15 +57,15 @@ class Gpx(Reader):
         OSError
             If it cannot be read.
         """
-        with open(file, "rb") as stream:
+        with open_bytes(file) as stream:
             losses = Losses()
             description = PlotDescription(time="time", id="id", geodetic=("lat", "lon"), wrap=None)
-            rows = _rows(stream, file, losses)
-            yield RecordSource(stream, file, _TYPES, description, rows, losses)
+            rows = _rows(stream, losses)
+            yield RecordSource(stream, _TYPES, description, rows, losses)
 
 
-def _rows(stream: IO[bytes], file: str, losses: Losses) -> Iterator[Row]:
-    points = _Points(file, losses)
+def _rows(stream: ByteStream, losses: Losses) -> Iterator[Row]:
+    points = _Points(stream.file, losses)
     parser = expat.ParserCreate()
     parser.buffer_text = True
     parser.StartDoctypeDeclHandler = points.refuse
@@ -76,7 +76,7 @@ def _rows(stream: IO[bytes], file: str, losses: Losses) -> Iterator[Row]:
     count = 0
     last = False
     while not last:
-        part = stream.read(_BYTES)
+        part = stream.take(_BYTES)
         last = not part
         try:
             parser.Parse(part, last)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import IO
+from itertools import chain
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.byte_stream import open_bytes
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.readers import Reader
 from fuzzytrack.io.record_source import Losses, RecordSource, Row
@@ -61,9 +63,11 @@ class Mot(Reader):
         OSError
             If it cannot be read.
         """
-        with open(file, "rb") as stream:
-            width, identified = _first_row(stream, file)
-            stream.seek(0)
+        with open_bytes(file) as stream:
+            # Not by iterating, which would hide how much has been read.
+            lines = enumerate(iter(io.BufferedReader(stream).readline, b""), 1)
+            number, first = _first_row(lines, stream.file)
+            width, identified = len(first), first[1] != -1.0
             numbers = (*_CELLS, *_MORE)[:width]
             types = dict.fromkeys((*numbers, "time", "x", "y"), "number") | {"id": "text"}
             description = PlotDescription(
@@ -74,18 +78,20 @@ class Mot(Reader):
                 remarks.append("times are numbers of frames")
             if not identified:
                 remarks.append("id is -1: no identities; all boxes are taken as one track")
-            rows = _rows(stream, file, width, self.rate)
-            yield RecordSource(stream, file, types, description, rows, Losses(), remarks)
+            rows = chain(
+                [_row(number, first, self.rate)], _rows(lines, stream.file, width, self.rate)
+            )
+            yield RecordSource(stream, types, description, rows, Losses(), remarks)
 
 
-def _first_row(stream: IO[bytes], file: str) -> tuple[int, bool]:
-    """Number of cells, and whether boxes have identities."""
-    for line in stream:
+def _first_row(lines: Iterator[tuple[int, bytes]], file: str) -> tuple[int, list[float]]:
+    """Number of the first row that is not blank, and its cells."""
+    for number, line in lines:
         if line.strip():
             cells = _numbers(line)
             if cells is None:
                 break
-            return len(cells), cells[1] != -1.0
+            return number, cells
     raise DataError(f"{file}: row 1: expected 7 to 10 numbers separated by commas")
 
 
@@ -101,9 +107,8 @@ def _numbers(line: bytes) -> list[float] | None:
     return found if all(map(math.isfinite, found)) else None
 
 
-def _rows(stream: IO[bytes], file: str, width: int, rate: float) -> Iterator[Row]:
-    # Not by iterating, which would hide how much has been read.
-    for number, line in enumerate(iter(stream.readline, b""), 1):
+def _rows(lines: Iterator[tuple[int, bytes]], file: str, width: int, rate: float) -> Iterator[Row]:
+    for number, line in lines:
         if not line.strip():
             continue
         cells = _numbers(line)
@@ -112,6 +117,10 @@ def _rows(stream: IO[bytes], file: str, width: int, rate: float) -> Iterator[Row
                 f"{file}: row {number}: expected {counted(width, 'number')} separated by commas, "
                 "as in the first row"
             )
-        frame, identity, left, top, wide, high, *_ = cells
-        center = (left + wide / 2.0, top + high / 2.0)
-        yield number, (frame, f"{identity:.15g}", *cells[2:], frame / rate, *center)
+        yield _row(number, cells, rate)
+
+
+def _row(number: int, cells: list[float], rate: float) -> Row:
+    frame, identity, left, top, wide, high, *_ = cells
+    center = (left + wide / 2.0, top + high / 2.0)
+    return number, (frame, f"{identity:.15g}", *cells[2:], frame / rate, *center)

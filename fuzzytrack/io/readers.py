@@ -36,8 +36,9 @@ class Reader(ABC):
     form: TextForm = PLAIN
 
     def reads(self, file: str) -> bool:
-        """Whether a file is in this format, as far as its name says so."""
-        return file.lower().endswith(self.suffixes)
+        """Whether a file is in this format, as far as its name says so; it may be compressed."""
+        name = file.lower().removesuffix(".gz").removesuffix(".zst")
+        return name.endswith(self.suffixes)
 
     def check(self, file: str) -> None:  # noqa: B027
         """Raise a DataError if what the format needs is not installed.

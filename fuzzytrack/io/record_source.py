@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.byte_stream import ByteStream
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.table import Column, Kind, Table, silent
 from fuzzytrack.tasks import Progress
 
-__all__ = ["Losses", "RecordSource", "Row"]
+__all__ = ["Losses", "RecordSource", "Row", "no_plots"]
 
 #: Where a record stands in its file, counted from 1, and its cells: a number, a text or None.
 Row = tuple[int, Sequence[Any]]
@@ -69,10 +69,8 @@ class RecordSource:
 
     Parameters
     ----------
-    stream : file
-        The open file, for the share of it that has been read.
-    file : str
-        Its name, for messages.
+    stream : ByteStream
+        The open file.
     types : mapping of str to str
         Names of the columns, and their types: "number" or "text".
     description : PlotDescription
@@ -87,27 +85,25 @@ class RecordSource:
 
     def __init__(
         self,
-        stream: IO[bytes],
-        file: str,
+        stream: ByteStream,
         types: Mapping[str, str],
         description: PlotDescription,
         rows: Iterator[Row],
         losses: Losses,
         remarks: Sequence[str] = (),
     ) -> None:
-        self.file, self.types, self.description = file, dict(types), description
+        self.file, self.types, self.description = stream.file, dict(types), description
         self._stream, self._rows, self._losses, self._remarks = stream, rows, losses, remarks
 
     @property
     def notes(self) -> list[str]:
         """What is worth a word about what has been read so far, and what was left out."""
-        return [*self._remarks, *self._losses.notes]
+        return [f"{self.file}: {note}" for note in (*self._remarks, *self._losses.notes)]
 
     def tables(
         self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
     ) -> Iterator[Table]:
         """Read columns, at most so many rows at a time; see `fuzzytrack.io.source.Source`."""
-        size = os.fstat(self._stream.fileno()).st_size
         columns: list[Column] = []
         places: list[int] = []
         found = False
@@ -117,17 +113,15 @@ class RecordSource:
             self._take(columns, part)
             places.extend(place for place, _ in part)
             found = True
-            # What is no ordinary file, as a pipe, has no size.
-            if size:
-                progress(min(self._stream.tell() / size, 1.0))
+            if (share := self._stream.share()) is not None:
+                progress(share)
             if rows is not None and len(places) == rows:
                 yield Table.of(self.file, columns, np.array(places))
                 places = []
         if places:
             yield Table.of(self.file, columns, np.array(places))
         if not found:
-            why = "; ".join(self.notes)
-            raise DataError(f"{self.file}: holds no plots{': ' + why if why else ''}")
+            raise no_plots(self.file, self._losses)
 
     def _take(self, columns: Sequence[Column], part: Sequence[Row]) -> None:
         """Add some rows to columns."""
@@ -142,6 +136,12 @@ class RecordSource:
                 column.take_times(np.array(cells, dtype=np.float64), places)
             else:
                 column.take_numbers(np.array(cells, dtype=np.float64), places)
+
+
+def no_plots(file: str, losses: Losses) -> DataError:
+    """Error about a file of which nothing is left."""
+    why = "; ".join(losses.notes)
+    return DataError(f"{file}: holds no plots{': ' + why if why else ''}")
 
 
 def _text(cell: float | str | None) -> str:

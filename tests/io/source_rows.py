@@ -12,4 +12,6 @@ def read(file, format=None, rows=None):
             assert len(table.rows) <= (rows or 10**9)
             for name, values in {**table.numbers, **table.cells}.items():
                 columns[name] += list(values)
-        return columns, source.description, source.notes
+        assert all(note.startswith(f"{file}: ") for note in source.notes)
+        notes = [note.removeprefix(f"{file}: ") for note in source.notes]
+        return columns, source.description, notes

@@ -1,4 +1,5 @@
 import datetime
+import gzip
 import math
 
 import pytest
@@ -146,3 +147,9 @@ def test_gpxpy_writes_what_is_read(tmp_path_factory, points):
     assert columns["ele"] == pytest.approx([ele for *_, ele in points], abs=1e-9)
     times = [datetime.datetime.fromisoformat(time) for time in columns["time"]]
     assert times == [point.time for point in segment.points]
+
+
+def test_compressed(tmp_path):
+    text = gpx(track([point(1, 2)])).encode()
+    columns, _, _ = read(written(tmp_path, gzip.compress(text), "a.GPX.gz"))
+    assert columns["lat"] == [1.0]
