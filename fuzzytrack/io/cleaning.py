@@ -22,6 +22,7 @@ from fuzzytrack.io import cleaning_step
 from fuzzytrack.io.cleaning_step import OWN, clean_rows
 from fuzzytrack.io.equal_times import EqualTimes
 from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.time_cells import same_time
 from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import constructor_code
 
@@ -32,7 +33,7 @@ Duplicates = Literal["error", "first", "last", "mean"]
 
 # Without a limit of the user's, a track ends after so many times the mean of its intervals so far,
 # of which there must be some. 2.4 million simulated tracks of 120 plots, with intervals that are
-# regular, with jitter, 1:10, in near-duplicate pairs, in bursts of 5 with gaps of 20, or
+# regular, with jitter, 1:10, in near-duplicate pairs, in bursts of 5 with gaps of 20 or 100, or
 # log-uniform over 1:100, were not divided, at detection probabilities from 1 down to 0.3.
 _GAP_FACTOR, _GAP_INTERVALS = 100.0, 8
 # A fall of the time by more mean intervals is no local disorder.
@@ -399,7 +400,7 @@ def _repeats(piece: Piece, place: int, before: str, identified: bool) -> str:
     earlier = np.flatnonzero(codes[:place] == codes[place])
     if cells is not None and len(earlier):
         one, other = str(cells[earlier[-1]]).strip(), str(cells[place]).strip()
-        if _differ(one, other):
+        if not same_time(one, other):
             return (
                 f"in the cell {other} and {one} in {before} are too close to tell apart in double "
                 "precision; expected times further apart"
@@ -410,16 +411,6 @@ def _repeats(piece: Piece, place: int, before: str, identified: bool) -> str:
         f"repeats that of {before}; expected times that differ, or `duplicates` to say which plot "
         f"counts{mend}"
     )
-
-
-def _differ(one: str, other: str) -> bool:
-    """Whether two cells of equal times are different times for certain."""
-    from decimal import Decimal, InvalidOperation
-
-    try:
-        return Decimal(one) != Decimal(other)
-    except InvalidOperation:
-        return False
 
 
 @cache

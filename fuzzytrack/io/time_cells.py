@@ -59,8 +59,9 @@ _LARGEST = 2**62
 # Below, a number of seconds in double precision is nearer to its own microsecond than to another,
 # and its nanoseconds fit in 64 bits.
 _MICROSECONDS = 2.0**32
-# The nanoseconds of any two numbers differ by what double precision can hold.
-_FINITE = 1e290
+# The nanoseconds of any two numbers up to this differ by what double precision can hold; those
+# below the other are none.
+_LARGE, _SMALL = 1e290, 1e-290
 
 _DATE = re.compile(
     r"([0-9]{4})([-/]?)([0-9]{2})\2([0-9]{2})"
@@ -127,13 +128,20 @@ def usable_cells(cells: Any) -> list[str] | NDArray[Any]:
     return ["" if cell is None else str(cell) for cell in values.tolist()]
 
 
-def same_time(one: Any, other: Any, form: Form) -> bool:
-    """Whether two cells of a column are the same time, however they are written."""
+def same_time(one: str, other: str) -> bool:
+    """Whether two cells are one time, however they are written; cells of two forms are not."""
+    form = form_of(one)
+    if form is None or form != form_of(other):
+        return one == other
     if form == "number":
-        # Exact, unlike floats; 1.0 equals 1.00.
-        return Decimal(str(one)) == Decimal(str(other))
+        try:
+            # Exact, unlike floats; 1.0 equals 1.00.
+            return Decimal(one) == Decimal(other)
+        except ArithmeticError:
+            # Decimals have a greatest and a least exponent.
+            return float(one) == float(other)
     reader = date_nanoseconds if form == "iso" else day_nanoseconds
-    return reader(str(one)) == reader(str(other))
+    return reader(one.strip()) == reader(other.strip())
 
 
 # -------------------------------------------------------------------- one cell
@@ -164,8 +172,12 @@ def number_nanoseconds(text: str, scale: int) -> int:
     scale : int
         Nanoseconds in its unit.
     """
-    if abs(number(text)) > _FINITE:
+    size = abs(number(text))
+    if size > _LARGE:
         raise ValueError("a number below 1e290")
+    if size < _SMALL:
+        # Decimals have a least exponent.
+        return 0
     return int((Decimal(text) * scale).to_integral_value())
 
 
