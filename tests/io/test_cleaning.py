@@ -518,3 +518,80 @@ def test_counts_add_up():
     one = CleaningCounts(copies=1, merged=1, fills=1, stale=1, delayed=1, segments=1, coasted=1)
     assert all(sentence.startswith("1 ") for sentence in one.sentences())
     assert len(one.sentences()) == 7
+
+
+# -------------------------------------------------------------------- against a plain account
+
+
+def told(time, there, values, *, max_gap, max_coast, least_step, stale):
+    """Segment (None if dropped) and position of each row of one track, told step by step."""
+    answer, segment, starts, last, shown = [], 0, [], None, None
+    for t, plot, value in zip(time, there, values, strict=True):
+        if plot and shown is not None and value == shown[1] and t - shown[0] <= stale:
+            plot, value = False, None
+        if starts and t - last > max_gap:
+            segment, starts = segment + 1, []
+        if plot and len(starts) == 1 and t - last < least_step:
+            plot, value = False, None
+            answer.append((segment, None))
+            continue
+        if plot:
+            starts.append(t)
+            last, shown = t, (t, value)
+        elif last is not None and t - last > max_coast:
+            answer.append(None)
+            continue
+        answer.append((segment, value if plot else None))
+    return answer
+
+
+@settings(max_examples=200)
+@given(
+    st.lists(
+        st.tuples(st.integers(1, 9), st.booleans(), st.integers(0, 2)), min_size=1, max_size=40
+    ),
+    st.sampled_from([3, 8, 20, None]),
+    st.sampled_from([0, 5, None]),
+    st.sampled_from([4, None]),
+    st.sampled_from([6, math.inf, None]),
+)
+def test_rows_are_judged_as_told_step_by_step(steps, max_gap, max_coast, least_step, stale):
+    time = np.cumsum([float(step) for step, _, _ in steps])
+    there = [plot for _, plot, _ in steps]
+    values = [float(value) for _, _, value in steps]
+    rows = piece(time, [v if plot else NAN for plot, v in zip(there, values, strict=True)])
+    rules = {
+        "max_gap": max_gap, "max_coast": max_coast, "least_step": least_step, "stale": stale
+    }  # fmt: skip
+    out, _ = cleaned(rows, **rules)
+    numbers = {"max_gap": math.inf, "max_coast": math.inf, "least_step": 0, "stale": -1}
+    numbers.update({name: value for name, value in rules.items() if value is not None})
+    expected = [
+        (line, segment, NAN if value is None else value)
+        for line, answer in enumerate(told(time, there, values, **numbers), 2)
+        if answer is not None
+        for segment, value in [answer]
+    ]
+    assert same([(row[1], row[4], row[3][0]) for row in out], expected)
+
+
+@given(st.lists(st.floats(0.1, 10), min_size=9, max_size=40), st.floats(1, 1000))
+def test_a_segment_begins_after_a_hundred_mean_intervals(steps, factor):
+    gap = factor * float(np.mean(steps))
+    time = np.concatenate([[0], np.cumsum(steps)])
+    _, counts = cleaned(piece([*time, time[-1] + gap]))
+    if abs(factor - 100) > 1e-6:
+        assert counts.segments == (factor > 100)
+
+
+@given(
+    st.lists(st.lists(st.floats(-9, 9), min_size=1, max_size=4), min_size=1, max_size=9),
+    st.sampled_from(["first", "last", "mean"]),
+)
+def test_equal_times_become_one_plot_by_the_rule(groups, duplicates):
+    groups = [list(dict.fromkeys(group)) for group in groups]
+    time = [float(k) for k, group in enumerate(groups) for _ in group]
+    out, counts = cleaned(piece(time, np.concatenate(groups)), duplicates=duplicates)
+    rule = {"first": lambda g: g[0], "last": lambda g: g[-1], "mean": np.mean}[duplicates]
+    assert plots(out) == pytest.approx([rule(group) for group in groups])
+    assert counts == CleaningCounts(merged=sum(map(len, groups)) - len(groups))
