@@ -85,9 +85,10 @@ docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; 
 	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
 
-fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases, FUZZ_FILES files of each format
+fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases and rows of CSV, FUZZ_FILES files of each other format
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_readers.py --count $(FUZZ_FILES)
+	$(BIN)/python tests/fuzz_files.py --rows $(FUZZ_COUNT)
 	HYPOTHESIS_PROFILE=free $(BIN)/python -m pytest $(PYTEST_ARGS) -m hypothesis
 
 bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)

@@ -22,7 +22,7 @@ __all__ = ["CHUNK", "Part", "line_parts", "text_lines"]
 # Rows at a time; many more at once keep the garbage collector busy.
 CHUNK = 5_000
 # Characters of a line, at most.
-_LONGEST = 1 << 22
+_LONGEST = 1 << 20
 
 
 class Part(Protocol):

@@ -176,14 +176,16 @@ def recognize(file: str, lines: Sequence[str], form: TextForm) -> Layout:
     ):
         first += 1
     if first == len(lines):
-        raise DataError(f"{file}: is empty; expected a row of column names, then data")
+        raise _is_empty(file)
     sample = lines[first:]
     delimiter = form.delimiter or _delimiter(file, sample, form, first + 1)
     form = replace(form, delimiter=delimiter)
     rows = _rows(sample, form)
     if not rows:
-        # The error of the row that is not CSV.
-        next(cells_of_lines(usable_lines(sample, form), delimiter))
+        # Rows of blank cells, or the error of a row that is not CSV.
+        for _ in cells_of_lines(usable_lines(sample, form), delimiter):
+            pass
+        raise _is_empty(file)
     units: dict[str, str] = {}
     if form.columns is None:
         (header, end), *rows = rows
@@ -210,6 +212,10 @@ def recognize(file: str, lines: Sequence[str], form: TextForm) -> Layout:
         lines=taken,
         comments=counts.get("comment line", 0),
     )
+
+
+def _is_empty(file: str) -> DataError:
+    return DataError(f"{file}: is empty; expected a row of column names, then data")
 
 
 def is_units_row(row: Sequence[str]) -> bool:

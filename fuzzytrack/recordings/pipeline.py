@@ -10,8 +10,7 @@ from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
-from fuzzytrack.recordings.track_table import TrackTable
-from fuzzytrack.recordings.track_writer import track_writer
+from fuzzytrack.recordings.track_writer import OUTPUTS, track_writer
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["track_pieces"]
@@ -43,12 +42,11 @@ def track_pieces(
     -------
     Totals
     """
-    table = TrackTable.of(columns, tracker, noise_is_known=sigma is not None)
-    tracks, totals = OpenTracks(tracker, sigma, table.outputs), Totals()
+    tracks, totals = OpenTracks(tracker, sigma, OUTPUTS), Totals()
     with ExitStack() as stack:
         write = None
         if output is not None:
-            write = stack.enter_context(track_writer(output, table, inputs))
+            write = stack.enter_context(track_writer(output, columns, inputs))
         for piece in pieces:
             tracked = tracks.advance(piece)
             totals.add(tracked)

@@ -23,6 +23,7 @@ BAD = {
     "long": (f"t,x\n0,{'q' * 99}\n", r"'q{40}…'"),
     "empty": ("", r"f.csv: is empty"),
     "blank": ("\n\n", r"f.csv: is empty"),
+    "blank cells": (",,\n,,\n", r"f.csv: is empty"),
     "header only": ("t,x\n\n", r"f.csv: holds no rows"),
     "ragged": ("t,x\n0,0\n\n1\n", r"row 4: 1 cell; expected 2"),
     "doubled": ("t,x,x\n0,0,0\n", r"row 1: two columns are called 'x'"),
