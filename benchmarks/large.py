@@ -31,7 +31,8 @@ from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.streaming import run_iter
-from fuzzytrack.recordings.track_writer import OUTPUTS, track_writer
+from fuzzytrack.recordings.track_table import TrackTable
+from fuzzytrack.recordings.track_writer import track_writer
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
@@ -76,8 +77,10 @@ def track(folder: str, output: str, tracker: str, rows: str) -> None:
     """Body of that process."""
     files, columns = _recording(Path(folder))
     pieces = read_pieces(files, columns, rows=int(rows), progress=_Shown("tracking"))
-    with track_writer(output, columns, files) as write:
-        for tracked in run_iter(_tracker(tracker), pieces, keep=OUTPUTS):
+    made = _tracker(tracker)
+    table = TrackTable.of(columns, made, noise_is_known=False)
+    with track_writer(output, table, files) as write:
+        for tracked in run_iter(made, pieces, keep=table.outputs):
             write(tracked.piece, tracked.outputs)
 
 

@@ -10,7 +10,8 @@ from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
-from fuzzytrack.recordings.track_writer import OUTPUTS, track_writer
+from fuzzytrack.recordings.track_table import TrackTable
+from fuzzytrack.recordings.track_writer import track_writer
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["track_pieces"]
@@ -42,11 +43,12 @@ def track_pieces(
     -------
     Totals
     """
-    tracks, totals = OpenTracks(tracker, sigma, OUTPUTS), Totals()
+    table = TrackTable.of(columns, tracker, noise_is_known=sigma is not None)
+    tracks, totals = OpenTracks(tracker, sigma, table.outputs), Totals()
     with ExitStack() as stack:
         write = None
         if output is not None:
-            write = stack.enter_context(track_writer(output, columns, inputs))
+            write = stack.enter_context(track_writer(output, table, inputs))
         for piece in pieces:
             tracked = tracks.advance(piece)
             totals.add(tracked)

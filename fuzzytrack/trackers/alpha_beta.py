@@ -130,6 +130,11 @@ class AlphaBetaTracker(LaneTracker):
         return self.scheduler.sigma_w
 
     @property
+    def uses_acceleration(self) -> bool:  # type: ignore[override]
+        """Whether there is a gain γ; from the scheduler."""
+        return self.scheduler.uses_acceleration
+
+    @property
     def one_recursion(self) -> bool:  # type: ignore[override]
         """Whether all that a track becomes follows from its gains: without a retention time."""
         return not self.scheduler.uses_retention

@@ -118,6 +118,8 @@ class ParallelBank(LaneTracker):
         """Whether a prediction is made without the plot that it predicts."""
         return self.selection != "hindsight"
 
+    uses_acceleration = False
+
     @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
         """Whether plots need a standard deviation: only where members are averaged."""

@@ -143,6 +143,11 @@ class InteractingPair(LaneTracker):
                     object.__setattr__(self, name, number(name, check(name, value)))
 
     @property
+    def uses_acceleration(self) -> bool:  # type: ignore[override]
+        """Whether the maneuvering model has an acceleration."""
+        return self.maneuver == "ca"
+
+    @property
     def coupled(self) -> bool:  # type: ignore[override]
         """Whether a lane is a whole track: if joint."""
         return self.joint

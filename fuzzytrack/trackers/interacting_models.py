@@ -133,6 +133,11 @@ class InteractingModels(LaneTracker):
             object.__setattr__(self, name, value)
 
     @property
+    def uses_acceleration(self) -> bool:  # type: ignore[override]
+        """Whether a model has an acceleration."""
+        return any(model.accelerates for model in self.models)
+
+    @property
     def needs_sigma(self) -> bool:  # type: ignore[override]
         """Whether plots need a standard deviation: unless `sigma_w` is given."""
         return self.sigma_w is None

@@ -67,6 +67,8 @@ class LaneTracker(ABC):
         the track. A missed plot does not change the track: it is predicted over the whole gap, as
         if there had been no steps between. ``step``: the time since the last step, at which the
         track may have coasted; so it is in the papers.
+    uses_acceleration : bool
+        Whether the gain γ can be other than 0; files of tracks then have it.
     one_recursion : bool
         Whether a track is one α-β-γ recursion with the gains of the result, as it is without a
         retention time. Then `run` can see that they do not suit the times of the plots, and warns.
@@ -77,6 +79,7 @@ class LaneTracker(ABC):
     sees_misses: bool = False
     sigma_w: float | None = None
     missed: str = "elapsed"
+    uses_acceleration: bool = True
     one_recursion: bool = True
 
     def __repr__(self) -> str:

@@ -65,6 +65,8 @@ class WindowSearch(LaneTracker):
 
     source: ClassVar[str] = "Al-Wagih & Abdulla, M4, Algorithm 2"
 
+    uses_acceleration = False
+
     window: int = 10
     alpha: float = 0.05
     grid_step: float = 0.05
