@@ -27,8 +27,9 @@ import pyarrow.parquet as pq
 
 from benchmarks.large_files import LIVE, Progress, compare, make
 from benchmarks.work import ROOT
-from fuzzytrack.io.columns import Columns
-from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
+from fuzzytrack.io.plot_files import ROWS, PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import recording_files
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.streaming import run_iter
 from fuzzytrack.recordings.track_table import TrackTable
@@ -53,7 +54,7 @@ CHILD = "import sys; from benchmarks.large import track; track(*sys.argv[1:])"
 
 def one(folder: Path, output: Path, tracker: str, rows: int) -> dict[str, Any]:
     """Track in a new process: its largest memory is that of the job."""
-    files, _ = _recording(folder)
+    files = _recording(folder).paths
     begin = time.perf_counter()
     given = (str(folder.resolve()), str(output.resolve()), tracker, str(rows))
     child = subprocess.Popen([sys.executable, "-c", CHILD, *given], cwd=ROOT)
@@ -75,11 +76,11 @@ def one(folder: Path, output: Path, tracker: str, rows: int) -> dict[str, Any]:
 
 def track(folder: str, output: str, tracker: str, rows: str) -> None:
     """Body of that process."""
-    files, columns = _recording(Path(folder))
-    pieces = read_pieces(files, columns, rows=int(rows), progress=_Shown("tracking"))
+    files = _recording(Path(folder))
+    pieces = files.pieces(rows=int(rows), progress=_Shown("tracking"))
     made = _tracker(tracker)
-    table = TrackTable.of(columns, made, noise_is_known=False)
-    with track_writer(output, table, files) as write:
+    table = TrackTable.of(files.decoder, made)
+    with track_writer(output, table, files.paths) as write:
         for tracked in run_iter(made, pieces, keep=table.outputs):
             write(tracked.piece, tracked.outputs)
 
@@ -91,9 +92,8 @@ def _tracker(spec: str) -> LaneTracker:
     return tracker
 
 
-def _recording(folder: Path) -> tuple[tuple[str, ...], Columns]:
-    files = recording_files(folder)
-    return files, find_columns(files, id=ID)
+def _recording(folder: Path) -> PlotFiles:
+    return PlotFiles.of(recording_files(folder), Reading.of(id=ID))
 
 
 def _work(files: tuple[str, ...], seconds: float) -> dict[str, Any]:
@@ -111,7 +111,7 @@ def cluster(
     """Track on two worker processes; a lost one is replaced by Dask."""
     from distributed import Client, LocalCluster
 
-    files, columns = _recording(folder)
+    files = _recording(folder)
     with (
         LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, memory_limit=0,
@@ -119,17 +119,17 @@ def cluster(
         ) as workers,
         Client(workers) as client,
     ):  # fmt: skip
-        watch = _Watch(client, len(files) + partitions, kill)
+        watch = _Watch(client, len(files.inputs) + partitions, kill)
         begin = time.perf_counter()
         track_partitions(
-            _tracker(tracker), files, columns, output, partitions=partitions, rows=rows,
+            _tracker(tracker), files, output, partitions=partitions, rows=rows,
             executor=client.get_executor(), progress=watch,
         )  # fmt: skip
         seconds = time.perf_counter() - begin
         watch.finish()
     used = watch.workers.values()
     return {
-        **_work(files, seconds),
+        **_work(files.paths, seconds),
         "partitions": partitions,
         "workers": list(used),
         "killed": watch.killed,

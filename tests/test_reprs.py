@@ -14,6 +14,7 @@ from fuzzytrack import normalizations, schedulers, trackers
 from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.saving import save_rulebase
 from fuzzytrack.gains.cost import TrackingCost
+from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.recording import Recording, Track
 from fuzzytrack.normalizations import Scale, Smoothed, SmoothedMagnitude
@@ -231,7 +232,10 @@ def values():
     yield from (result, result.gains, result.state, tracker.predict(result.state, 9.0), store)
     yield from (scenario, scenario.sensors, results, results.sample)
     yield from (piece, piece.ids, *run_iter("chan-style", [piece]), *batches([times, times[:4]]))
-    yield from (Track("a", times, plots[:, 0]), Recording("a.csv", "t", "id", ("x", "y"), ()))
+    yield from (
+        Track("a", times, plots[:, 0]),
+        Recording("a.csv", Columns("t", "id", ("x", "y")), ()),
+    )
     yield from (certify(rules), certify("stiffness-damping-wide"), review(rules))
     yield from (rules.inputs[0], *rules.rules, system.surface("damping", 5), SHAPES["trapmf"])
     yield from (track_covariance(result, 1.5, 0.5), tracker.program(2), columns(rules))

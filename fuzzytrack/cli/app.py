@@ -19,7 +19,7 @@ COMMANDS = {
     "demo": ("demo:demo", "Track a simulated turning target, and draw the results."),
     "track": (
         "track:track",
-        "Track the plots of a file, or of a folder of files in order of their names.",
+        "Track the plots of a file, or of several files in their order.",
     ),
     "compare": ("compare:compare", "Compare trackers on a true track with simulated noise."),
     "testbed": (

@@ -8,8 +8,11 @@ from typing import Annotated
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import print_json, print_table, progress, show, with_error
-from fuzzytrack.cli.recording import read_recording
+from fuzzytrack.cli.output import print_json, print_table, progress, say_aside, show, with_error
+from fuzzytrack.cli.plot_options import reads_positions
+from fuzzytrack.io.plot_files import PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import read_recording, recording_files
 from fuzzytrack.plurals import counted
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.trackers.base import Tracker
@@ -17,11 +20,13 @@ from fuzzytrack.trackers.catalog import as_trackers
 
 __all__ = ["DEFAULT_TRACKERS", "compare", "print_comparison", "trackers_named"]
 
-DEFAULT_TRACKERS = "fixed:alpha=0.5377:beta=0.2018,chan-style,stiffness-damping"
+DEFAULT_TRACKERS = "maneuver,fixed:alpha=0.5377:beta=0.2018,chan-style,stiffness-damping"
 
 
+@reads_positions
 def compare(
     file: options.Plots,
+    reading: Reading,
     noise: Annotated[
         float,
         typer.Option(metavar="SIGMA", help="Standard deviation of the noise on each axis, > 0."),
@@ -31,10 +36,6 @@ def compare(
     ] = DEFAULT_TRACKERS,
     runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 200,
     seed: options.Seed = 0,
-    time: options.Time = None,
-    id: options.Id = None,
-    axes: options.Axes = None,
-    sort: options.Sort = False,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
@@ -47,7 +48,10 @@ def compare(
         raise ValueError(f"--noise must be > 0, got {noise:g}")
     options.load_plugins(plugin)
     chosen = trackers_named(trackers)
-    recording = read_recording(file, time, id, axes, sort)
+    with progress("reading") as watch:
+        recording = read_recording(PlotFiles.of(recording_files(file), reading), watch)
+    for note in recording.findings.notes:
+        say_aside(f"note: {note}")
     tracks = [(track.time, track.plots) for track in recording.tracks]
     with progress("comparing") as watch:
         found = compare_tracks(chosen, tracks, noise, runs, seed, watch)

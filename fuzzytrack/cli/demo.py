@@ -20,6 +20,7 @@ from fuzzytrack.cli.output import output_folder, print_json, progress, say
 from fuzzytrack.cli.pictures import save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.formats import write_table
 from fuzzytrack.io.recording import Recording, Track
 from fuzzytrack.recordings.track_writer import write_tracks
@@ -74,7 +75,7 @@ def _tables(folder: Path, found: Comparison, result: TrackResult) -> list[Path]:
     comparison, track = folder / "comparison.csv", folder / "track.csv"
     write_table(comparison, {"tracker": found.names, **found.errors()})
     plots = Track("", result.time, result.measured)
-    write_tracks(track, Recording("demo", "t", "", ("x", "y"), (plots,)), [result])
+    write_tracks(track, Recording("demo", Columns("t", "", ("x", "y")), (plots,)), [result])
     return [comparison, track]
 
 

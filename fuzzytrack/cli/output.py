@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -26,10 +27,13 @@ __all__ = [
     "print_table",
     "progress",
     "say",
+    "say_aside",
     "show",
     "with_error",
     "write_json",
 ]
+
+_ARGUMENT = re.compile(r"`(\w+)`")
 
 # Spaces between the columns of a table.
 _GAP = 2
@@ -38,6 +42,14 @@ _GAP = 2
 def say(text: str = "") -> None:
     """Print a line without wrapping it."""
     typer.echo(text)
+
+
+def say_aside(text: str) -> None:
+    """Print a line on standard error, which is no part of the result.
+
+    Names of arguments in backquotes are written as options.
+    """
+    typer.echo(_ARGUMENT.sub(lambda found: f"--{found[1].replace('_', '-')}", text), err=True)
 
 
 def paragraph(text: str) -> None:

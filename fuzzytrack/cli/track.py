@@ -4,28 +4,39 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any
 
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import print_json, print_table, progress, say, show
+from fuzzytrack.cli.output import (
+    print_json,
+    print_table,
+    progress,
+    say,
+    say_aside,
+    show,
+    with_error,
+)
 from fuzzytrack.cli.pictures import check_picture, save_picture
-from fuzzytrack.cli.recording import axes_named, read_recording
-from fuzzytrack.io.columns import Columns
+from fuzzytrack.cli.plot_options import reads_plots
+from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import check_table
-from fuzzytrack.io.recording import Recording
-from fuzzytrack.recordings.ragged import join_tracks, run_tracks
+from fuzzytrack.io.plot_files import ROWS
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.totals import Totals
-from fuzzytrack.recordings.track_writer import write_tracks
-from fuzzytrack.trackers.catalog import make_tracker
+from fuzzytrack.recordings.tracking import (
+    DEFAULT_TRACKER,
+    PreparedPlots,
+    TrackedRecording,
+    prepare,
+    track_recording,
+)
+from fuzzytrack.trackers.catalog import as_lane_tracker, make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
-from fuzzytrack.trackers.result import TrackResult
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 __all__ = ["track"]
 
@@ -37,20 +48,21 @@ _LISTED = 20
 _HEADS = ("plots", "missed", "duration (s)", "innovation RMS", "mean α", "mean β")
 
 
+@reads_plots
 def track(
-    file: Annotated[
-        str,
-        typer.Argument(metavar="FILE|DIR", help="CSV or Parquet file, or a folder of Parquet."),
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE|DIR...", help="Files of plots, a folder of them, or -."),
     ],
+    reading: Reading,
     tracker: Annotated[
-        str,
-        typer.Option("--tracker", metavar="NAME|FILE.yaml", help="See `fuzzytrack trackers`."),
-    ] = "stiffness-damping",
-    time: options.Time = None,
-    id: options.Id = None,
-    axes: options.Axes = None,
-    sigma: options.PlotSigma = None,
-    sort: options.Sort = False,
+        str | None,
+        typer.Option(
+            "--tracker",
+            metavar="NAME|FILE.yaml",
+            help=f"See `fuzzytrack trackers`. [default: {DEFAULT_TRACKER}]",
+        ),
+    ] = None,
     output: Annotated[
         str | None,
         typer.Option(
@@ -76,46 +88,41 @@ def track(
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
-    """Track the plots of a file, or of a folder of files in order of their names.
+    """Track the plots of a file, or of several files in their order.
 
-    Times are in seconds; an empty cell or nan is a missed plot. A folder, or a file of more than
-    100 MB, is tracked in pieces, and may be larger than memory.
+    A folder, or a file of more than 100 MB, is tracked in pieces, and may be larger than memory.
     """
-    if sigma is not None and not 0 < sigma < math.inf:
-        raise ValueError(f"--sigma must be > 0, got {sigma:g}")
     options.load_plugins(plugin)
-    chosen = make_tracker(tracker)
+    chosen = make_tracker(DEFAULT_TRACKER if tracker is None else tracker)
     apart = scheduler is not None or jobs > 1
-    if (
-        apart
-        or chunk_rows is not None
-        or os.path.isdir(file)
-        or (_is_large(file) and isinstance(chosen, LaneTracker) and not (sort or plot))
-    ):
+    large = len(files) == 1 and _is_large(files[0]) and isinstance(chosen, LaneTracker)
+    in_pieces = apart or chunk_rows is not None or any(map(os.path.isdir, files)) or len(files) > 1
+    if in_pieces or (large and not (reading.sort or plot)):
         from fuzzytrack.recordings.large_jobs import LargeJob
 
-        _check_pieces(sort, plot)
-        job = LargeJob.of(file, chosen, sigma, chunk_rows, time=time, id=id, axes=axes_named(axes))
+        _check_pieces(reading.sort, plot)
+        as_lane_tracker(chosen)
+        folder = _folder(output) if apart else ""
+        prepared = prepare(files, tracker, reading)
+        job = LargeJob(prepared.files, as_lane_tracker(prepared.tracker), chunk_rows or ROWS)
         with progress("tracking") as watch:
             if apart:
-                folder = _folder(output)
                 totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
             else:
                 totals = job.track(output, watch)
-        run = _Run(job.columns, totals)
+        run = _Run.of(prepared, totals)
     else:
-        _look_ahead(file, output, plot)
-        recording = read_recording(file, time, id, axes, sort)
+        _look_ahead(files[0], output, plot)
         with progress("tracking") as watch:
-            plots = [(t.time, t.plots) for t in recording.tracks]
-            results = run_tracks(chosen, plots, sigma, watch)
+            tracked = track_recording(files[0], tracker, reading, watch)
         if output is not None:
             with progress("writing") as watch:
-                write_tracks(output, recording, results, watch)
+                tracked.write(output, watch)
         if plot is not None:
-            save_picture(plot, lambda: _draw(recording, results), (file,))
-        run = _Run.whole(recording, results, listed=_LISTED if not json else len(results))
+            save_picture(plot, tracked.plot, (files[0],))
+        run = _Run.whole(tracked, listed=_LISTED if not json else len(tracked))
     if json:
+        file = files[0] if len(files) == 1 else list(files)
         _print_json(run, {"file": file, "tracker": tracker}, {"output": output, "plot": plot})
         return
     _print_table(run)
@@ -160,37 +167,101 @@ def _folder(output: str | None) -> str:
 class _Run:
     """What is printed of a run: its columns, its totals, and those of single tracks if listed."""
 
-    columns: Columns
+    decoder: PlotDecoder
+    findings: Findings
     total: Totals
     tracks: tuple[tuple[str, Totals], ...] | None = None
 
     @classmethod
-    def whole(cls, recording: Recording, results: Sequence[TrackResult], listed: int) -> _Run:
+    def of(cls, prepared: PreparedPlots, total: Totals) -> _Run:
+        """Run of a recording in pieces."""
+        prepared.findings.merge(total.findings)
+        return cls(prepared.files.decoder, prepared.findings, total)
+
+    @classmethod
+    def whole(cls, tracked: TrackedRecording, listed: int) -> _Run:
         """Run of a whole recording; at most so many tracks are listed one by one."""
         tracks = None
+        recording, results = tracked.recording, tracked.results
         if len(results) <= listed:
             pairs = zip(recording.tracks, results, strict=True)
-            tracks = tuple((track.id, Totals.of([result])) for track, result in pairs)
-        return cls(recording.columns, Totals.of(results), tracks)
+            tracks = tuple((_label(track), Totals.of([result])) for track, result in pairs)
+        assert recording.decoder is not None
+        return cls(recording.decoder, tracked.findings, tracked.totals, tracks)
+
+
+def _label(track: Track) -> str:
+    """Identity of a track, with the number of its segment from the second one on."""
+    return f"{track.id} ({track.segment + 1})".strip() if track.segment else track.id
+
+
+def _noise_sentence(decoder: PlotDecoder) -> str:
+    """Standard deviations of the plots in words; empty if they are not known."""
+    if not decoder.noise:
+        return ""
+    errors = decoder.noise_errors or (None,) * len(decoder.noise)
+    shown = [_one_noise(*pair) for pair in zip(decoder.noise, errors, strict=True)]
+    if len(set(shown)) == 1:
+        return shown[0]
+    names = _noise_names(decoder)
+    return ", ".join(f"{name} {each}" for name, each in zip(names, shown, strict=True))
+
+
+def _noise_names(decoder: PlotDecoder) -> tuple[str, ...]:
+    columns = decoder.columns
+    return columns.read if decoder.noise_is_polar else columns.axes
+
+
+def _one_noise(sigma: float | str | None, error: float | None) -> str:
+    if isinstance(sigma, str):
+        return f"column {sigma}"
+    value = math.nan if sigma is None else sigma
+    return show(value) if error is None else f"{with_error(value, error)} (estimated)"
+
+
+def _noise_json(decoder: PlotDecoder) -> dict[str, Any]:
+    """Standard deviations and their errors by coordinate; null where they are not known."""
+    names = _noise_names(decoder)
+    sigma = dict(zip(names, decoder.noise, strict=True)) if decoder.noise else None
+    errors = decoder.noise_errors
+    return {
+        "sigma": sigma,
+        "sigma_error": dict(zip(names, errors, strict=True)) if errors else None,
+    }
 
 
 def _print_json(run: _Run, read: dict[str, Any], written: dict[str, Any]) -> None:
-    columns = run.columns
+    columns = run.decoder.columns
     tracks: dict[str, Any] = {"tracks": None, "number": run.total.tracks}
     if run.tracks is not None:
         rows = [{"id": id if columns.id else None, **of.summary} for id, of in run.tracks]
         tracks = {"tracks": rows}
     total = {"total": run.total.summary}
-    print_json({**read, "time": columns.time, "axes": columns.axes, **tracks, **total, **written})
+    found = {
+        "columns": asdict(columns),
+        **_noise_json(run.decoder),
+        **run.findings.to_json_dict(),
+    }
+    print_json(
+        {**read, "time": columns.time, "axes": columns.axes, **found, **tracks, **total, **written}
+    )
 
 
 def _print_table(run: _Run) -> None:
-    columns = run.columns
-    rows = [[id if columns.id else "track", *_row(of)] for id, of in run.tracks or ()]
+    columns = run.decoder.columns
+    say(f"columns: {columns.sentence}")
+    noise = _noise_sentence(run.decoder)
+    if noise:
+        say(f"sigma: {noise}")
+    for note in run.findings.notes:
+        say_aside(f"note: {note}")
+    rows = [[id if columns.id else f"track{id}", *_row(of)] for id, of in run.tracks or ()]
     if len(rows) != 1:
         rows += [[]] if rows else []
         rows.append([f"all {run.total.tracks}" if columns.id else "track", *_row(run.total)])
     print_table([columns.id, *_HEADS], rows)
+    for fault in run.findings.sentences():
+        say(fault)
 
 
 def _row(totals: Totals) -> list[str]:
@@ -202,12 +273,3 @@ def _row(totals: Totals) -> list[str]:
         f"{summary['duration']:.6g}",
         *numbers,
     ]
-
-
-# -------------------------------------------------------------------- picture
-
-
-def _draw(recording: Recording, results: Sequence[TrackResult]) -> Figure:
-    from fuzzytrack.plotting import plot_track
-
-    return plot_track(join_tracks(results), axes_names=recording.axes, unit="")[0]

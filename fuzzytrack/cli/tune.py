@@ -9,7 +9,6 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, say, show
-from fuzzytrack.cli.recording import axes_named
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.io.files import check_output
 from fuzzytrack.plurals import counted
@@ -102,7 +101,7 @@ def tune(
                 truth=truth,
                 time=time,
                 id=id,
-                axes=axes_named(axes),
+                axes=None if axes is None else options.names(axes, "--axes"),
                 sort=sort,
                 runs=runs,
                 seed=seed,

@@ -7,14 +7,9 @@ from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.io.formats import check_table, read_table, table_writer, write_table
 from fuzzytrack.io.geo_track import GeoTrack
 from fuzzytrack.io.piece import Piece
-from fuzzytrack.io.recording import (
-    Recording,
-    Track,
-    find_columns,
-    read_pieces,
-    read_tracks,
-    recording_files,
-)
+from fuzzytrack.io.plot_files import PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import Recording, Track, read_tracks, recording_files
 from fuzzytrack.io.table import Table, Words
 from fuzzytrack.io.times import Clock
 from fuzzytrack.io.track_formats import write_geo_tracks
@@ -28,14 +23,14 @@ __all__ = [
     "GeoTrack",
     "Piece",
     "PlotDescription",
+    "PlotFiles",
+    "Reading",
     "Recording",
     "Table",
     "Track",
     "Words",
     "check_output",
     "check_table",
-    "find_columns",
-    "read_pieces",
     "read_table",
     "read_tracks",
     "recording_files",

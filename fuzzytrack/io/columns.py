@@ -1,19 +1,56 @@
-"""Which columns of a table are time, identity and position."""
+"""Which columns of a table are time, identity, position and noise."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from fuzzytrack.errors import DataError
+from fuzzytrack.io.column_names import plain_name
+from fuzzytrack.io.description import PlotDescription, texts
 from fuzzytrack.io.table import Kind
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["Columns", "choose_columns"]
+__all__ = ["Columns", "PositionKind", "choose_columns", "looks_like_identity"]
 
-# Names that columns usually have.
-TIMES = ("t", "t_s", "time", "time_s")
-AXES = (("x", "y", "z"), ("x_m", "y_m", "z_m"))
+PositionKind = Literal["cartesian", "polar", "geodetic", "angle"]
+
+# Names that columns usually have, without units and in lower case.
+_TIMES = ("t", "time", "timestamp", "datetime", "date_time", "basedatetime", "epoch", "utc")
+_TIME_UNITS = ("", "s", "ms", "us", "ns")
+_AXES = ("x", "y", "z")
+_METERS = ("", "m")
+_IDENTITIES = [
+    "id",
+    "track",
+    "trackid",
+    "track_id",
+    "track_number",
+    "target",
+    "targetid",
+    "target_id",
+    "object_id",
+    "vehicle_id",
+    "vessel_id",
+    "mmsi",
+    "icao",
+    "icao24",
+    "callsign",
+    "imei",
+    "device_id",
+    "tail",
+]
+# Names of angles, and which argument takes them.
+_POLAR = ("azimuth", "azi", "az", "bearing", "brg", "theta")
+_HEADING = ("heading", "hdg", "course", "cog")
+_LATITUDE, _LONGITUDE = ("latitude", "lat"), ("longitude", "lon", "lng", "long")
+_RANGE = ("range", "rng", "rho", "distance", "slant_range")
+
+_NAMES: dict[PositionKind, tuple[str, ...]] = {
+    "polar": ("x", "y", "z"),
+    "geodetic": ("east", "north", "up"),
+}
 
 
 @dataclass(frozen=True)
@@ -25,27 +62,66 @@ class Columns:
     time, id : str
         Names of the columns of time and of identity; the latter empty if there is none.
     axes : tuple of str
-        Names of the columns of position.
+        Names of the coordinates of a plot: the columns of position, where these are Cartesian or a
+        bare angle, otherwise x, y, z of polar ones and east, north, up of geodetic ones.
+    position : {"cartesian", "polar", "geodetic", "angle"}
+        What the columns of position hold.
+    read : tuple of str
+        Columns of position; unless given, `axes`.
+    date : str
+        Column of the date of a time of day; empty if there is none.
+    own_ship : tuple of str
+        Columns of the position of the sensor.
+    own_heading : str
+        Column of its heading.
+    noise : tuple of str
+        Columns of standard deviations.
     """
 
     time: str
     id: str
     axes: tuple[str, ...]
+    position: PositionKind = "cartesian"
+    read: tuple[str, ...] = ()
+    date: str = ""
+    own_ship: tuple[str, ...] = ()
+    own_heading: str = ""
+    noise: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.read:
+            object.__setattr__(self, "read", self.axes)
 
     @property
     def kinds(self) -> dict[str, Kind]:
         """What the columns must hold."""
-        words: dict[str, Kind] = {self.id: "word"} if self.id else {}
-        gaps: dict[str, Kind] = dict.fromkeys(self.axes, "gaps")
-        return {self.time: "number", **words, **gaps}
+        kinds: dict[str, Kind] = {self.id: "word"} if self.id else {}
+        kinds |= dict.fromkeys(filter(None, [self.date, self.time]), "time")
+        own = [*self.own_ship, *filter(None, [self.own_heading])]
+        kinds |= dict.fromkeys([*self.read, *own, *self.noise], "gaps")
+        return kinds
+
+    @property
+    def sentence(self) -> str:
+        """Which columns are used, in words."""
+        time = f"{self.date} and {self.time}" if self.date else self.time
+        parts = [f"time {time}", f"id {self.id}" if self.id else "no id: one track"]
+        kind = "" if self.position == "cartesian" else f" ({self.position})"
+        parts.append(f"position {', '.join(self.read)}{kind}")
+        if self.own_ship:
+            parts.append(f"own ship {', '.join(self.own_ship)}")
+        if self.own_heading:
+            parts.append(f"own heading {self.own_heading}")
+        if self.noise:
+            parts.append(f"sigma {', '.join(self.noise)}")
+        return "; ".join(parts)
 
 
 def choose_columns(
     names: tuple[str, ...],
     file: str,
-    time: str | None,
-    id: str | None,
-    axes: Sequence[str] | None,
+    description: PlotDescription | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> Columns:
     """Find the columns of a recording, by the names given or by their usual names.
 
@@ -55,70 +131,177 @@ def choose_columns(
         Columns of the file.
     file : str
         Its name, for messages.
-    time, id : str or None
-        Column of time, and of identity; without the latter the file holds one track.
-    axes : sequence of str or None
-        Columns of position.
+    description : PlotDescription, optional
+        What is known of them.
+    units : mapping of str to str, optional
+        Units of columns, where the file gives them apart from the names.
 
     Raises
     ------
     DataError
-        If there are no such columns, or one would serve twice.
+        If there are no such columns, two could be meant, or one would serve twice.
     """
-    _check_header(names, file)
-    columns = Columns(
-        _time_column(names, time, file),
-        "" if id is None else _known(names, id, "id", file),
-        _axes_columns(names, axes, file),
-    )
-    every = [columns.time, *filter(None, [columns.id]), *columns.axes]
+    said = description or PlotDescription()
+    date, time = _time_columns(names, said, file)
+    id = "" if said.id is None else known(names, said.id, "id", file)
+    position, read = _position(names, said, file, units or {})
+    axes = _NAMES.get(position, read)[: len(read)]
+    own = tuple(known(names, name, "own_ship", file) for name in said.own_ship or ())
+    heading = said.own_heading and known(names, said.own_heading, "own_heading", file)
+    noise = _noise_columns(names, said, file)
+    columns = Columns(time, id, axes, position, read, date, own, heading or "", noise)
+    every = [*filter(None, [date, time, id, heading]), *read, *own]
     doubled = [name for name in every if every.count(name) > 1]
     if doubled:
         raise DataError(f"{file}: column {doubled[0]!r} cannot serve twice")
     return columns
 
 
-def _check_header(names: tuple[str, ...], file: str) -> None:
-    """Refuse a first row that is not separated by commas."""
-    if len(names) == 1:
-        for mark, word in ((";", "semicolons"), ("\t", "tabs")):
-            if mark in names[0]:
-                raise DataError(f"{file}: row 1: separated by {word}; expected commas")
+def known(names: tuple[str, ...], name: str, argument: str, file: str) -> str:
+    """Column of a name that a user gives, which may be in other letters than in the file."""
+    if name in names:
+        return name
+    alike = [other for other in names if other.lower() == name.lower()]
+    if len(alike) == 1:
+        return alike[0]
+    raise DataError(f"{file}: `{argument}`: no column {name!r}{suggestion(name, names)}")
 
 
-def _known(names: tuple[str, ...], name: str, argument: str, file: str) -> str:
-    if name not in names:
-        raise DataError(f"{file}: `{argument}`: no column {name!r}{suggestion(name, names)}")
-    return name
+# -------------------------------------------------------------------- time
 
 
-def _time_column(names: tuple[str, ...], time: str | None, file: str) -> str:
-    if time is not None:
-        return _known(names, time, "time", file)
-    for name in TIMES:
-        if name in names:
-            return name
+def _time_columns(names: tuple[str, ...], said: PlotDescription, file: str) -> tuple[str, str]:
+    if isinstance(said.time, tuple):
+        date, time = (known(names, name, "time", file) for name in said.time)
+        return date, time
+    if said.time is not None:
+        return "", known(names, said.time, "time", file)
+    found = [name for name in names if _is_time(name)]
+    if len(found) > 1:
+        raise DataError(
+            f"{file}: columns {_list(found, 'and')} could all be the time; name one of them with "
+            "`time`"
+        )
+    if found:
+        return "", found[0]
     raise DataError(
-        f"{file}: no column {_either(TIMES)}; name the column of time with `time`; "
+        f"{file}: no column t, time or timestamp; name the column of time with `time`; "
         f"there are {', '.join(names)}"
     )
 
 
-def _axes_columns(names: tuple[str, ...], axes: Sequence[str] | None, file: str) -> tuple[str, ...]:
-    if axes is not None:
-        if not axes:
-            raise DataError(f"{file}: `axes`: needs at least one column")
-        return tuple(_known(names, name, "axes", file) for name in axes)
-    for group in AXES:
-        found = tuple(name for name in group if name in names)
-        if found:
-            return found
+def _is_time(name: str) -> bool:
+    plain, unit = plain_name(name)
+    return plain in _TIMES and unit in _TIME_UNITS
+
+
+# -------------------------------------------------------------------- position
+
+
+def _position(
+    names: tuple[str, ...], said: PlotDescription, file: str, units: Mapping[str, str]
+) -> tuple[PositionKind, tuple[str, ...]]:
+    if said.polar is not None:
+        return "polar", tuple(known(names, name, "polar", file) for name in said.polar)
+    if said.geodetic is not None:
+        return "geodetic", tuple(known(names, name, "geodetic", file) for name in said.geodetic)
+    if said.angle is not None:
+        return "angle", (known(names, said.angle, "angle", file),)
+    if said.axes is None:
+        return "cartesian", _usual_axes(names, file, units)
+    if not said.axes:
+        raise DataError(f"{file}: `axes`: needs at least one column")
+    axes = tuple(known(names, name, "axes", file) for name in said.axes)
+    if not said.cartesian:
+        _refuse_angles(names, axes, file)
+    return "cartesian", axes
+
+
+def _usual_axes(names: tuple[str, ...], file: str, units: Mapping[str, str]) -> tuple[str, ...]:
+    axes = []
+    for axis in _AXES:
+        found = [name for name in names if plain_name(name)[0] == axis]
+        if len(found) > 1:
+            raise DataError(
+                f"{file}: columns {_list(found, 'and')} could all be {axis}; name those of "
+                "position with `axes`"
+            )
+        for name in found:
+            unit = units.get(name) or plain_name(name)[1]
+            if unit not in _METERS:
+                raise DataError(
+                    f"{file}: column {name!r} is in {unit}; expected meters. `axes` takes columns "
+                    "as they are: tracks and standard deviations are then in that unit"
+                )
+            axes.append(name)
+    if axes:
+        return tuple(axes)
+    remedy = _angles_there(names)
+    if remedy:
+        raise DataError(f"{file}: no columns x, y; {remedy}")
     raise DataError(
         f"{file}: no columns x, y or x_m, y_m; name those of position with `axes`; "
         f"there are {', '.join(names)}"
     )
 
 
-def _either(words: Collection[str]) -> str:
-    *most, last = words
-    return f"{', '.join(most)} or {last}"
+def _refuse_angles(names: tuple[str, ...], axes: tuple[str, ...], file: str) -> None:
+    """Refuse to take a bearing or a latitude as a distance."""
+    for name in axes:
+        if _plain_is(name, (*_POLAR, *_HEADING, *_LATITUDE, *_LONGITUDE)):
+            if _plain_is(name, _HEADING) or len(axes) == 1:
+                remedy = f"`angle`={name} takes it as an angle (degrees)"
+            else:
+                remedy = _angles_there(names)
+            raise DataError(
+                f"{file}: `axes`: column {name!r} is an angle by its name; "
+                f"{remedy or f'`angle`={name} takes it as an angle'}; "
+                "`cartesian` takes it as a position in any case"
+            )
+
+
+def _angles_there(names: tuple[str, ...]) -> str:
+    """What would read the angles among the columns; empty if there are none."""
+
+    def first(words: Collection[str]) -> str | None:
+        return next((name for name in names if _plain_is(name, words)), None)
+
+    pairs: tuple[tuple[str, str | None, str | None, str], ...] = (
+        ("geodetic", first(_LATITUDE), first(_LONGITUDE), "latitude and longitude (degrees)"),
+        ("polar", first(_RANGE), first(_POLAR), "range and azimuth (degrees)"),
+    )
+    for argument, one, other, what in pairs:
+        if one is not None and other is not None:
+            return f"`{argument}`={one},{other} takes {what}"
+    single = first((*_POLAR, *_HEADING))
+    return f"`angle`={single} takes a bare angle (degrees)" if single is not None else ""
+
+
+def _plain_is(name: str, words: Collection[str]) -> bool:
+    return plain_name(name)[0] in words
+
+
+# -------------------------------------------------------------------- noise and identity
+
+
+def _noise_columns(names: tuple[str, ...], said: PlotDescription, file: str) -> tuple[str, ...]:
+    found: list[str] = []
+    for argument in ("sigma", "sigma_range", "sigma_azimuth", "sigma_elevation"):
+        value = getattr(said, argument)
+        if value == "auto":
+            continue
+        found += [known(names, name, argument, file) for name in texts(value)]
+    return tuple(dict.fromkeys(found))
+
+
+def looks_like_identity(names: Sequence[str], columns: Columns) -> str:
+    """Column that by its name is an identity and is not used; empty if there is none."""
+    if columns.id:
+        return ""
+    free = (name for name in names if name not in columns.kinds)
+    return next((name for name in free if _plain_is(name, _IDENTITIES)), "")
+
+
+def _list(words: Sequence[str], between: str) -> str:
+    *most, last = map(repr, words)
+    return f"{', '.join(most)} {between} {last}"

@@ -181,9 +181,9 @@ def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: int) -> _A
     chosen = _Differences.of(times[apart], plots[apart], codes[apart])
     if len(chosen.values) < FEWEST:
         raise DataError(
-            f"plots: too few for an estimate of their noise: axis {axis} has {len(plots)} plots, "
-            f"in which {len(chosen.values)} runs of {_ORDER + 1} in one track begin, and "
-            f"{FEWEST} are needed; give `sigma`"
+            f"too few plots to estimate their noise: axis {axis} has {len(plots)}, with "
+            f"{len(chosen.values)} runs of {_ORDER + 1} plots in one track; {FEWEST} are needed. "
+            "`sigma` gives it"
         )
     sigma, used = _deviation(chosen.values)
     # Differences of plots without noise are those of rounding.

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.io.table import Words
+from fuzzytrack.io.table import Cells, Words
 from fuzzytrack.reprs import summary
 
-__all__ = ["Piece"]
+__all__ = ["Piece", "joined", "joined_cells"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Piece:
     rows: NDArray[np.int64]
     file: str = ""
     sigma: Array | None = None
-    time_cells: Sequence[str] | NDArray[Any] | None = None
+    time_cells: Cells | None = None
     segments: NDArray[np.int64] | None = None
 
     def __repr__(self) -> str:
@@ -89,6 +89,26 @@ class Piece:
         """Number of rows."""
         return len(self.time)
 
+    @property
+    def tracks(self) -> Words:
+        """Which track each row belongs to: its identity, and its segment from the second one on."""
+        if self.segments is None or not self.segments.any():
+            return self.ids
+        # In order of first appearance, as identities are.
+        _, first, codes = np.unique(
+            self.ids.codes * (int(self.segments.max()) + 1) + self.segments,
+            return_index=True,
+            return_inverse=True,
+        )
+        order = np.argsort(first)
+        place = np.empty(len(order), dtype=np.int64)
+        place[order] = np.arange(len(order))
+        names = (
+            f"{self.ids[row]}\0{self.segments[row]}" if self.segments[row] else self.ids[row]
+            for row in first[order].tolist()
+        )
+        return Words(tuple(names), place[codes])
+
     def take(self, places: NDArray[Any]) -> Piece:
         """Rows of this piece.
 
@@ -113,3 +133,39 @@ class Piece:
             time_cells=cells,
             segments=None if self.segments is None else self.segments[places],
         )
+
+
+def joined(pieces: Sequence[Piece]) -> Piece:
+    """Pieces as one; the file of the first one stands for all."""
+    if len(pieces) == 1:
+        return pieces[0]
+    names: dict[str, int] = {}
+    codes = []
+    for piece in pieces:
+        new = np.array([names.setdefault(name, len(names)) for name in piece.ids.names])
+        codes.append(new[piece.ids.codes])
+
+    def one(name: str) -> Any:
+        parts = [getattr(piece, name) for piece in pieces]
+        return None if any(part is None for part in parts) else np.concatenate(parts)
+
+    return Piece(
+        Words(tuple(names), np.concatenate(codes)),
+        one("time"),
+        one("plots"),
+        one("rows"),
+        pieces[0].file,
+        sigma=one("sigma"),
+        time_cells=joined_cells([piece.time_cells for piece in pieces]),
+        segments=one("segments"),
+    )
+
+
+def joined_cells(parts: Sequence[Cells | None]) -> Cells | None:
+    """Cells of pieces, one after the other; None if a piece has none."""
+    arrays = [part for part in parts if isinstance(part, np.ndarray)]
+    if len(arrays) == len(parts):
+        return np.concatenate(arrays)
+    if any(part is None for part in parts):
+        return None
+    return [str(cell) for part in parts if part is not None for cell in part]

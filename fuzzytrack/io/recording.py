@@ -1,39 +1,31 @@
-"""Recordings: the plots of tracks in files, read piece by piece or as whole tracks."""
+"""Recordings: the plots of tracks in files, read as whole tracks."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.columns import Columns, choose_columns
+from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.files import PathLike
-from fuzzytrack.io.formats import CSV, PARQUET, open_table
-from fuzzytrack.io.piece import Piece
-from fuzzytrack.io.source import Source
-from fuzzytrack.io.table import Table, Words, no_rows, silent
+from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.formats import CSV, PARQUET
+from fuzzytrack.io.piece import Piece, joined
+from fuzzytrack.io.plot_files import PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.table import Cells, no_rows
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 
-__all__ = [
-    "ROWS",
-    "Piece",
-    "Recording",
-    "Track",
-    "find_columns",
-    "read_pieces",
-    "read_tracks",
-    "recording_files",
-]
-
-
-#: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
-ROWS = 250_000
+__all__ = ["Recording", "Track", "read_recording", "read_tracks", "recording_files"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,11 +40,20 @@ class Track:
         Times (s), increasing.
     plots : ndarray, shape (n_steps, n_axes)
         Positions, NaN where missed.
+    sigma : ndarray, shape (n_steps, n_axes), optional
+        Standard deviations of the plots, where each has its own.
+    time_cells : sequence of str or ndarray, optional
+        Times as the file has them.
+    segment : int
+        Which part of the track this is, if it was not seen for long and began again.
     """
 
     id: str
     time: Array
     plots: Array
+    sigma: Array | None = None
+    time_cells: Cells | None = None
+    segment: int = 0
 
     def __repr__(self) -> str:
         return summary(self, "id", "plots")
@@ -66,30 +67,24 @@ class Recording:
     ----------
     file : str
         Name of the file.
-    time, id : str
-        Names of the columns of time and of identity; the latter empty if there is none.
-    axes : tuple of str
-        Names of the columns of position.
+    columns : Columns
+        Which of its columns are what.
     tracks : tuple of Track
         At least one, with at least one plot each.
+    decoder : PlotDecoder, optional
+        How its rows became plots.
+    findings : Findings
+        Faults and notes.
     """
 
     file: str
-    time: str
-    id: str
-    axes: tuple[str, ...]
+    columns: Columns
     tracks: tuple[Track, ...]
+    decoder: PlotDecoder | None = None
+    findings: Findings = field(default_factory=Findings)
 
     def __repr__(self) -> str:
-        return summary(self, "file", "axes", tracks=len(self.tracks))
-
-    @property
-    def columns(self) -> Columns:
-        """Columns of the file that are time, identity and position."""
-        return Columns(self.time, self.id, self.axes)
-
-
-# -------------------------------------------------------------------- files and columns
+        return summary(self, "file", tracks=len(self.tracks))
 
 
 def recording_files(path: PathLike) -> tuple[str, ...]:
@@ -120,144 +115,20 @@ def recording_files(path: PathLike) -> tuple[str, ...]:
     return found["Parquet"] or found["CSV"]
 
 
-def find_columns(
-    files: Sequence[str],
-    *,
-    time: str | None = None,
-    id: str | None = None,
-    axes: Sequence[str] | None = None,
-) -> Columns:
-    """Find the columns of a recording, and check that all of its files have them.
-
-    Parameters
-    ----------
-    files : sequence of str
-        At least one.
-    time, id, axes
-        As for `read_tracks`.
-
-    Raises
-    ------
-    DataError
-        If a column is missing, or its type differs between files.
-    OSError
-        If a file cannot be read.
-    """
-    first = files[0]
-    with open_table(first) as source:
-        types = source.types
-    columns = choose_columns(tuple(types), first, time, id, axes)
-    for file in files[1:]:
-        with open_table(file) as source:
-            others = source.types
-        for name in columns.kinds:
-            if name not in others:
-                raise DataError(f"{file}: no column {name!r}, which {first} has")
-            if others[name] != types[name]:
-                raise DataError(
-                    f"{file}: column {name}: is {others[name]}; expected {types[name]}, as in "
-                    f"{first}"
-                )
-    return columns
-
-
-# -------------------------------------------------------------------- pieces
-
-
-def read_pieces(
-    files: Sequence[str],
-    columns: Columns,
-    *,
-    rows: int | None = ROWS,
-    progress: Progress | None = None,
-) -> Iterator[Piece]:
-    """Read a recording piece by piece, file by file.
-
-    Parameters
-    ----------
-    files : sequence of str
-        CSV or Parquet; see `fuzzytrack.io.formats.open_table`.
-    columns : Columns
-        From `find_columns`.
-    rows : int or None
-        Rows of a piece, at most; None makes each file one piece.
-    progress : callable, optional
-        Called with the share that has been read.
-
-    Yields
-    ------
-    Piece
-        At least one row; no piece of a file without rows.
-
-    Raises
-    ------
-    DataError
-        If a file does not hold such tracks; names row, column and value.
-    OSError
-        If a file cannot be read.
-
-    Notes
-    -----
-    Holds one piece, and of a Parquet file about a megabyte a column, at a time, however large the
-    row groups are.
-    """
-    if rows is not None and rows < 1:
-        raise ValueError(f"rows must be at least 1, got {rows}")
-    sizes = [os.path.getsize(file) for file in files]
-    total = max(1, sum(sizes))
-    before = 0
-    for file, size in zip(files, sizes, strict=True):
-
-        def watch(share: float, before: int = before, size: int = size) -> None:
-            if progress is not None:
-                progress((before + share * size) / total)
-
-        with open_table(file) as source:
-            for table in source.tables(columns.kinds, rows, watch):
-                yield _piece(table, columns)
-        before += size
-
-
-def _piece(table: Table, columns: Columns) -> Piece:
-    return Piece(
-        table.words[columns.id] if columns.id else Words.same("", len(table.rows)),
-        table.numbers[columns.time],
-        np.stack([table.numbers[name] for name in columns.axes], axis=1),
-        table.rows,
-        table.file,
-    )
-
-
-# -------------------------------------------------------------------- tracks
-
-
-def read_tracks(
-    path: PathLike,
-    *,
-    time: str | None = None,
-    id: str | None = None,
-    axes: Sequence[str] | None = None,
-    sort: bool = False,
-    progress: Progress | None = None,
-) -> Recording:
+def read_tracks(path: PathLike, *, progress: Progress | None = None, **options: Any) -> Recording:
     """Read the plots of tracks.
 
     Parameters
     ----------
     path : str or path
-        CSV or Parquet; see `fuzzytrack.io.formats.open_table`. Columns that are not named are
-        ignored.
-    time : str, optional
-        Column of time (s); t, t_s, time or time_s unless given.
-    id : str, optional
-        Column of the identity of tracks, kept as text; one track unless given.
-    axes : sequence of str, optional
-        Columns of position; x, y, z or x_m, y_m, z_m, those that there are, unless given. An empty
-        cell, ``nan`` or ``NA`` is a missed plot.
-    sort : bool
-        Whether to put plots in order of time.
+        A file, see `fuzzytrack.io.formats.open_table`, or a folder of them. Columns that are not
+        named are ignored.
     progress : callable, optional
         Called with the share of the file that has been read.
+    **options
+        How it is read: attributes of `PlotDescription` (time, id, axes, polar…), `Cleaning`
+        (duplicates, max_gap…) and `TextForm` (delimiter, na…), ``format``, and ``sort``, which puts
+        the plots of each track in order of time.
 
     Returns
     -------
@@ -267,59 +138,57 @@ def read_tracks(
     ------
     DataError
         If the file does not hold such tracks: names row, column, value and what was expected.
+    TypeError
+        If there is no such option.
     OSError
         If it cannot be read.
     """
-    file = os.fspath(path)
-    with open_table(file) as source:
-        # A file that is a pipe can be opened once only.
-        columns = choose_columns(tuple(source.types), file, time, id, axes)
-        piece = _whole(source, columns, progress or silent)
-    tracks = _tracks(piece, columns, sort)
-    return Recording(file, columns.time, columns.id, columns.axes, tracks)
+    return read_recording(PlotFiles.of(recording_files(path), Reading.of(**options)), progress)
 
 
-def _whole(source: Source, columns: Columns, progress: Progress) -> Piece:
-    """Read a whole file as one piece."""
-    for table in source.tables(columns.kinds, None, progress):
-        return _piece(table, columns)
-    raise no_rows(source.file)
+def read_recording(files: PlotFiles, progress: Progress | None = None) -> Recording:
+    """Read files as whole tracks.
+
+    Parameters
+    ----------
+    files : PlotFiles
+        The files.
+    progress : callable, optional
+        Called with the share of the files that has been read.
+
+    Raises
+    ------
+    DataError, OSError
+        As `read_tracks`.
+    """
+    findings = Findings()
+    pieces = list(files.pieces(rows=None, findings=findings, progress=progress))
+    if not pieces:
+        raise no_rows(files.names[0])
+    piece = joined(pieces)
+    if files.reading.sort:
+        # Stable: the order of the file within a track.
+        piece = piece.take(np.lexsort((piece.time, piece.ids.codes)))
+    tracks = tracks_of(joined(list(files.cleaned([piece], findings))))
+    return Recording(files.names[0], files.columns, tracks, files.decoder, findings)
 
 
-def _tracks(piece: Piece, columns: Columns, sort: bool) -> tuple[Track, ...]:
-    """Tracks of a piece, in order of first appearance."""
-    ids, times = piece.ids, piece.time
-    # Stable: the order of the file within a track.
-    order = np.lexsort((times, ids.codes)) if sort else np.argsort(ids.codes, kind="stable")
-    codes, times = ids.codes[order], times[order]
-    wrong = np.flatnonzero((np.diff(times) <= 0) & (np.diff(codes) == 0)) + 1
-    if len(wrong):
-        first = wrong[np.argmin(piece.rows[order[wrong]])]
-        raise _time_error(piece, columns, order[first - 1], order[first])
-    plots = piece.plots[order]
-    ends = np.searchsorted(codes, np.arange(len(ids.names) + 1))
-    return tuple(
-        Track(name, times[start:end], plots[start:end])
-        for name, start, end in zip(ids.names, ends[:-1], ends[1:], strict=True)
-    )
+def tracks_of(piece: Piece) -> tuple[Track, ...]:
+    """Tracks of a piece that has been cleaned, in order of first appearance."""
+    keys = piece.tracks
+    # Stable: the order of the piece within a track.
+    order = np.argsort(keys.codes, kind="stable")
+    ends = np.searchsorted(keys.codes[order], np.arange(len(keys.names) + 1))
+    return tuple(_track(piece, order[start:end]) for start, end in pairwise(ends) if end > start)
 
 
-def _time_error(piece: Piece, columns: Columns, before: int, here: int) -> DataError:
-    """Error about the time of a row that is not later than that of the row before."""
-    times, rows = piece.time, piece.rows
-    id = piece.ids[here]
-    whose = f" (id {id!r})" if id else ""
-    if times[here] == times[before]:
-        # Several tracks in one file look like this when their identities are not read.
-        mend = "" if id else "; if these are several tracks, name the column of their id (`id`)"
-        what = f"repeats that of row {rows[before]}"
-        wanted = f"expected times that differ{mend}"
-    else:
-        what = f"is earlier than {times[before]:.15g} in row {rows[before]}"
-        wanted = "expected increasing times; `sort` puts them in order"
-        if not id:
-            wanted += ", and `id` names the column that distinguishes tracks"
-    return DataError(
-        f"{piece.file}: row {rows[here]}, column {columns.time}: time {times[here]:.15g}{whose} "
-        f"{what}; {wanted}"
+def _track(piece: Piece, places: NDArray[np.int64]) -> Track:
+    rows = piece.take(places)
+    return Track(
+        rows.ids[0],
+        rows.time,
+        rows.plots,
+        rows.sigma,
+        rows.time_cells,
+        0 if rows.segments is None else int(rows.segments[0]),
     )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
-from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, check_output_folder
+from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.piece import Piece
-from fuzzytrack.io.recording import ROWS, find_columns, read_pieces, recording_files
+from fuzzytrack.io.plot_files import ROWS, PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import recording_files
 from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
@@ -30,26 +33,20 @@ class LargeJob:
 
     Attributes
     ----------
-    files : tuple of str
-        Files of the recording.
-    columns : Columns
-        Of the files.
+    files : PlotFiles
+        The recording.
     tracker : LaneTracker
         The tracker.
-    sigma : float or None
-        Standard deviation of the plots (m).
     rows : int
         Rows of a piece.
     """
 
-    files: tuple[str, ...]
-    columns: Columns
+    files: PlotFiles
     tracker: LaneTracker
-    sigma: float | None
-    rows: int
+    rows: int = ROWS
 
     def __repr__(self) -> str:
-        return summary(self, "tracker", "rows", files=len(self.files))
+        return summary(self, "tracker", "rows", files=len(self.files.inputs))
 
     @classmethod
     def of(
@@ -58,17 +55,14 @@ class LargeJob:
         tracker: Tracker | str,
         sigma: float | None = None,
         rows: int | None = None,
-        *,
-        time: str | None = None,
-        id: str | None = None,
-        axes: Sequence[str] | None = None,
+        **options: Any,
     ) -> LargeJob:
         """Make the job of a file or folder.
 
         Parameters
         ----------
         path : str or path
-            CSV or Parquet file, or a folder of Parquet files.
+            A file, or a folder of them.
         tracker : Tracker or str
             Any of this package, or what names it, see
             `fuzzytrack.trackers.catalog.make_tracker`.
@@ -76,8 +70,8 @@ class LargeJob:
             Standard deviation of the plots (m).
         rows : int, optional
             Rows of a piece; 250,000 unless given.
-        time, id, axes
-            Columns, as for `fuzzytrack.io.read_tracks`.
+        **options
+            How the files are read, see `fuzzytrack.io.read_tracks`.
 
         Raises
         ------
@@ -89,9 +83,9 @@ class LargeJob:
             If a file cannot be read.
         """
         made = as_lane_tracker(tracker)
-        files = recording_files(path)
-        columns = find_columns(files, time=time, id=id, axes=axes)
-        return cls(files, columns, made, sigma, ROWS if rows is None else rows)
+        reading = Reading.of(sigma=sigma, **options)
+        files = PlotFiles.of(recording_files(path), reading)
+        return cls(files, made, ROWS if rows is None else rows)
 
     def track(self, output: PathLike | None, progress: Progress | None = None) -> Totals:
         """Track piece by piece.
@@ -110,20 +104,18 @@ class LargeJob:
         Raises
         ------
         DataError, ValueError, OSError
-            As `fuzzytrack.io.read_pieces`, `fuzzytrack.recordings.run_iter` and
+            As `fuzzytrack.io.PlotFiles.pieces`, `fuzzytrack.recordings.run_iter` and
             `fuzzytrack.recordings.track_writer`.
         """
         if output is not None:
-            check_table(output, self.files)
-        pieces = read_pieces(self.files, self.columns, rows=self.rows, progress=progress)
-        return track_pieces(
-            self.tracker,
-            self.sigma,
-            _with_rows(pieces, self.files[0]),
-            self.columns,
-            output,
-            inputs=self.files,
-        )
+            check_table(output, self.files.paths)
+        findings = Findings()
+        pieces = self.files.pieces(rows=self.rows, findings=findings, progress=progress)
+        some = _with_rows(pieces, self.files.names[0])
+        totals = track_pieces(self.tracker, self.files, some, output, inputs=self.files.paths)
+        findings.merge(totals.findings)
+        totals.findings = findings
+        return totals
 
     def track_apart(
         self,
@@ -160,9 +152,7 @@ class LargeJob:
             return track_partitions(
                 self.tracker,
                 self.files,
-                self.columns,
                 output,
-                sigma=self.sigma,
                 partitions=partitions,
                 rows=self.rows,
                 executor=executor,

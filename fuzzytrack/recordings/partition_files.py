@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
 
-from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_file
 from fuzzytrack.io.parquet import arrow_table, import_pyarrow, parquet_writer, words_of
 from fuzzytrack.io.piece import Piece
-from fuzzytrack.io.recording import ROWS
-from fuzzytrack.io.table import Words
+from fuzzytrack.io.plot_files import ROWS
 
 __all__ = ["partition_of", "read_partition", "write_partitions"]
 
 # Columns of a file of partitions; those of the recording may have any names.
-_ROW = "row"
+_ROW, _CELL = "row", "time_cell"
 
 
 def partition_of(id: str, partitions: int) -> int:
@@ -50,34 +49,57 @@ def write_partitions(path: PathLike, pieces: Iterable[Piece], n_axes: int, parti
     Each piece becomes as many row groups as there are partitions, empty ones included: row group
     k·partitions + p holds the rows of partition p of piece k, in their order.
     """
-    columns = _columns(n_axes)
-    types = {columns.id: "string", _ROW: "int64", columns.time: "float64"}
-    types |= dict.fromkeys(columns.axes, "float64")
-    with whole_file(path) as draft, parquet_writer(draft, types, compact=False) as writer:
-        rows = 0
+    rows = 0
+    with whole_file(path) as draft, ExitStack() as stack:
+        writer: Any = None
         for piece in pieces:
-            rows += len(piece.time)
-            for table in _parts(writer.schema, columns, piece, partitions):
+            if writer is None:
+                types = _types(_values(piece))
+                writer = stack.enter_context(parquet_writer(draft, types, compact=False))
+            for table in _parts(writer.schema, piece, partitions):
                 writer.write_table(table)
+            rows += len(piece)
+        if writer is None:
+            nothing = _values(Piece.of([], [], np.empty((0, n_axes))))
+            stack.enter_context(parquet_writer(draft, _types(nothing), compact=False))
     return rows
 
 
-def _columns(n_axes: int) -> Columns:
-    return Columns("time", "id", tuple(f"axis_{k}" for k in range(n_axes)))
+def _axes(n_axes: int, what: str = "axis") -> list[str]:
+    return [f"{what}_{k}" for k in range(n_axes)]
 
 
-def _parts(schema: Any, columns: Columns, piece: Piece, partitions: int) -> Iterator[Any]:
+def _values(piece: Piece) -> dict[str, Any]:
+    """Columns of a piece; those that it does not have are left out."""
+    values: dict[str, Any] = {"id": piece.ids, _ROW: piece.rows, "time": piece.time}
+    n_axes = piece.plots.shape[1]
+    values |= {name: piece.plots[:, k] for k, name in enumerate(_axes(n_axes))}
+    if piece.sigma is not None:
+        values |= {name: piece.sigma[:, k] for k, name in enumerate(_axes(n_axes, "sigma"))}
+    if piece.time_cells is not None:
+        values[_CELL] = piece.time_cells
+    return values
+
+
+def _types(values: Mapping[str, Any]) -> dict[str, str]:
+    """Names of the columns, and their types as Arrow calls them."""
+    return {name: _type(column) for name, column in values.items()}
+
+
+def _type(column: Any) -> str:
+    if not isinstance(column, np.ndarray):
+        return "string"
+    if column.dtype.kind == "M":
+        return f"timestamp[{np.datetime_data(column.dtype)[0]}]"
+    return str(column.dtype.name)
+
+
+def _parts(schema: Any, piece: Piece, partitions: int) -> Iterator[Any]:
     """Rows of each partition of a piece."""
     of_name = np.array([partition_of(name, partitions) for name in piece.ids.names], dtype=np.int64)
     of_row = of_name[piece.ids.codes]
     order = np.argsort(of_row, kind="stable")
-    values = {
-        columns.id: Words(piece.ids.names, piece.ids.codes[order]),
-        _ROW: piece.rows[order],
-        columns.time: piece.time[order],
-        **{name: piece.plots[order, k] for k, name in enumerate(columns.axes)},
-    }
-    whole = arrow_table(schema, values)
+    whole = arrow_table(schema, _values(piece.take(order)))
     ends = np.cumsum(np.bincount(of_row, minlength=partitions)).tolist()
     for start, end in zip([0, *ends[:-1]], ends, strict=True):
         yield whole.slice(start, end - start)
@@ -113,14 +135,13 @@ def read_partition(
         At least one row; `rows` are those of the file that was sorted.
     """
     arrow = import_pyarrow(str(path))
-    columns = _columns(n_axes)
     with open(path, "rb") as stream:
         source = arrow.parquet.ParquetFile(stream, pre_buffer=False)
         groups: list[int] = []
         waiting = 0
 
         def piece() -> Piece:
-            return _piece(source.read_row_groups(groups), columns, file)
+            return _piece(source.read_row_groups(groups), n_axes, file)
 
         for group in range(partition, source.num_row_groups, partitions):
             count = source.metadata.row_group(group).num_rows
@@ -134,8 +155,22 @@ def read_partition(
             yield piece()
 
 
-def _piece(table: Any, columns: Columns, file: str) -> Piece:
-    words = words_of(table.column(columns.id))
-    plots = np.stack([table.column(name).to_numpy() for name in columns.axes], axis=1)
-    rows = table.column(_ROW).to_numpy()
-    return Piece(words, table.column(columns.time).to_numpy(), plots, rows, file)
+def _piece(table: Any, n_axes: int, file: str) -> Piece:
+    there = table.column_names
+
+    def stacked(names: Sequence[str]) -> Any:
+        return np.stack([table.column(name).to_numpy() for name in names], axis=1)
+
+    sigma = _axes(n_axes, "sigma")
+    cells = table.column(_CELL) if _CELL in there else None
+    if cells is not None:
+        cells = cells.to_pylist() if str(cells.type) == "string" else cells.to_numpy()
+    return Piece(
+        words_of(table.column("id")),
+        table.column("time").to_numpy(),
+        stacked(_axes(n_axes)),
+        table.column(_ROW).to_numpy(),
+        file,
+        sigma=stacked(sigma) if sigma[0] in there else None,
+        time_cells=cells,
+    )

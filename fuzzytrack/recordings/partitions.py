@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike, whole_folder
-from fuzzytrack.io.recording import ROWS, read_pieces
+from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.plot_files import ROWS, PlotFiles
 from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partition_files import read_partition, write_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
@@ -31,9 +30,7 @@ Part = TypeVar("Part")
 @dataclass(frozen=True)
 class _Job:
     tracker: LaneTracker
-    sigma: float | None
-    files: tuple[str, ...]
-    columns: Columns
+    files: PlotFiles
     partitions: int
     rows: int
     folder: str
@@ -49,11 +46,9 @@ class _Job:
 
 def track_partitions(
     tracker: LaneTracker | str,
-    files: Sequence[str],
-    columns: Columns,
+    files: PlotFiles,
     output: PathLike,
     *,
-    sigma: float | None = None,
     partitions: int = 16,
     rows: int = ROWS,
     executor: Executor | None = None,
@@ -65,15 +60,11 @@ def track_partitions(
     ----------
     tracker : LaneTracker or str
         The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
-    files : sequence of str
+    files : PlotFiles
         Files of the recording, in order of time.
-    columns : Columns
-        From `fuzzytrack.io.find_columns`.
     output : str or path
         Folder to be made, with one Parquet file for each partition, ``part-00000.parquet`` and on;
         see `fuzzytrack.recordings.track_writer`. It appears whole or not at all.
-    sigma : float, optional
-        Standard deviation of the plots (m).
     partitions : int
         Number of partitions.
     rows : int
@@ -91,7 +82,7 @@ def track_partitions(
     Raises
     ------
     DataError, ValueError, OSError
-        As `fuzzytrack.io.read_pieces`, `fuzzytrack.recordings.run_iter` and
+        As `fuzzytrack.io.PlotFiles.pieces`, `fuzzytrack.recordings.run_iter` and
         `fuzzytrack.io.files.whole_folder`.
 
     Notes
@@ -108,19 +99,16 @@ def track_partitions(
         raise ValueError(f"partitions must be at least 1, got {partitions}")
     made, totals = as_lane_tracker(tracker), Totals()
     with whole_folder(output) as draft:
-        job = _Job(
-            made,
-            sigma,
-            tuple(map(os.path.abspath, files)),
-            columns,
-            partitions,
-            rows,
-            str(draft),
-        )
+        job = _Job(made, files.absolute(), partitions, rows, str(draft))
         job.sorted_file(0).parent.mkdir()
-        steps = _Steps(len(files) + partitions, progress)
+        steps = _Steps(len(files.inputs) + partitions, progress)
         sort = partial(_sort_file, job)
-        found = sum(rows for _, rows in steps.counted(run_tasks(sort, range(len(files)), executor)))
+        found = 0
+        sorted_files = dict(steps.counted(run_tasks(sort, range(len(files.inputs)), executor)))
+        for number in sorted(sorted_files):
+            count, findings = sorted_files[number]
+            found += count
+            totals.findings.merge(findings)
         job = replace(job, expected=found // partitions)
         track = partial(_track_partition, job)
         parts = dict(steps.counted(run_tasks(track, range(partitions), executor)))
@@ -128,7 +116,7 @@ def track_partitions(
         for partition in range(partitions):
             totals.merge(parts[partition])
         if not totals.tracks:
-            raise no_rows(files[0])
+            raise no_rows(files.names[0])
         _keep_only(draft, {job.part(number) for number in range(partitions)})
     return totals
 
@@ -161,21 +149,23 @@ def _keep_only(folder: Path, parts: set[Path]) -> None:
 # -------------------------------------------------------------------- tasks
 
 
-def _sort_file(job: _Job, number: int) -> int:
-    pieces = read_pieces(job.files[number : number + 1], job.columns, rows=job.rows)
-    target = job.sorted_file(number)
-    return write_partitions(target, pieces, len(job.columns.axes), job.partitions)
+def _sort_file(job: _Job, number: int) -> tuple[int, Findings]:
+    findings = Findings()
+    one = job.files.only(number)
+    pieces = one.pieces(rows=job.rows, findings=findings)
+    count = write_partitions(job.sorted_file(number), pieces, len(one.columns.axes), job.partitions)
+    return count, findings
 
 
 def _track_partition(job: _Job, partition: int) -> Totals:
-    n_axes = len(job.columns.axes)
+    n_axes = len(job.files.columns.axes)
     # A worker that has not run the tracker yet compiles it at once, if the work is large enough.
     announce(job.tracker, n_axes, n_axes * job.expected)
     pieces = (
         piece
-        for number, file in enumerate(job.files)
+        for number, file in enumerate(job.files.names)
         for piece in read_partition(
             job.sorted_file(number), n_axes, partition, job.partitions, file=file, rows=job.rows
         )
     )
-    return track_pieces(job.tracker, job.sigma, pieces, job.columns, job.part(partition))
+    return track_pieces(job.tracker, job.files, pieces, job.part(partition))

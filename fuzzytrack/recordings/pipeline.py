@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from contextlib import ExitStack
 
-from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_table import TrackTable
@@ -19,21 +19,22 @@ __all__ = ["track_pieces"]
 
 def track_pieces(
     tracker: LaneTracker,
-    sigma: float | None,
+    files: PlotFiles,
     pieces: Iterable[Piece],
-    columns: Columns,
     output: PathLike | None,
     *,
     inputs: tuple[PathLike, ...] = (),
 ) -> Totals:
-    """Track pieces, count them, and write them as they come.
+    """Clean and track pieces, count them, and write them as they come.
 
     Parameters
     ----------
-    tracker, sigma, pieces
-        As for `fuzzytrack.recordings.run_iter`.
-    columns : Columns
-        Of the recording.
+    tracker : LaneTracker
+        The tracker.
+    files : PlotFiles
+        What the pieces are from: columns, noise and cleaning.
+    pieces : iterable of Piece
+        As they were read, with their faults.
     output : str, path or None
         File for the tracks, if there is to be one.
     inputs : tuple of str or path
@@ -43,16 +44,16 @@ def track_pieces(
     -------
     Totals
     """
-    table = TrackTable.of(columns, tracker, noise_is_known=sigma is not None)
-    tracks, totals = OpenTracks(tracker, sigma, table.outputs), Totals()
+    table = TrackTable.of(files.decoder, tracker)
+    tracks, totals = OpenTracks(tracker, files.decoder.sigma, table.outputs), Totals()
     with ExitStack() as stack:
         write = None
         if output is not None:
             write = stack.enter_context(track_writer(output, table, inputs))
-        for piece in pieces:
+        for piece in files.cleaned(pieces, totals.findings):
             tracked = tracks.advance(piece)
             totals.add(tracked)
             if write is not None:
-                write(piece, tracked.outputs)
+                write(tracked.piece, tracked.outputs)
     totals.close(len(tracks), tracks.duration)
     return totals

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -89,6 +90,9 @@ def run_tracks(
     tracks: Sequence[tuple[Array, Array]],
     sigma: ArrayLike | None = None,
     progress: Progress | None = None,
+    *,
+    sigmas: Sequence[Array] | None = None,
+    keep: Sequence[str] | None = None,
 ) -> list[TrackResult]:
     """Run a tracker over many tracks in batches, with the same results as one by one, but faster.
 
@@ -98,10 +102,14 @@ def run_tracks(
         The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`.
     tracks : sequence of (t, z)
         Times, shape (n_steps,), and plots, shape (n_steps, n_axes), of each track.
-    sigma : float, optional
-        Standard deviation of the plots (m).
+    sigma : array_like, optional
+        Standard deviation of the plots (m): one, or one for each axis.
     progress : callable, optional
         Called with the share of the work that is done.
+    sigmas : sequence of ndarray, optional
+        Standard deviations of the plots of each track, shaped as these, in place of `sigma`.
+    keep : sequence of str, optional
+        Which outputs to keep, as for `fuzzytrack.AlphaBetaTracker.run`.
 
     Returns
     -------
@@ -118,14 +126,19 @@ def run_tracks(
         return []
     gap = np.full((1, tracks[0][1].shape[1]), np.nan)
     pool = np.concatenate([*(z for _, z in tracks), gap])
+    noise = None if sigmas is None else np.concatenate([*sigmas, gap])
     results: dict[int, TrackResult] = {}
+    # Trackers of plug-ins need not take the argument.
+    kept: dict[str, Any] = {} if keep is None else {"keep": keep}
     done = 0
     for batch in batches([t for t, _ in tracks]):
         if len(batch.members) == 1:
             alone = int(batch.members[0])
-            results[alone] = tracker.run(*tracks[alone], sigma)
+            own = sigma if sigmas is None else sigmas[alone]
+            results[alone] = tracker.run(*tracks[alone], own, **kept)
         else:
-            whole = tracker.run(batch.times, pool[batch.places], sigma)
+            own = sigma if noise is None else noise[batch.places]
+            whole = tracker.run(batch.times, pool[batch.places], own, **kept)
             for column, member in enumerate(batch.members.tolist()):
                 results[member] = _member(whole, column, len(tracks[member][0]))
         done += len(batch.members)
@@ -135,21 +148,14 @@ def run_tracks(
 
 
 def _member(whole: TrackResult, column: int, length: int) -> TrackResult:
-    def cut(values: Array) -> Array:
+    def cut(values: Array) -> Any:
         return values[:length, column]
 
-    gains = Gains(*(cut(g) for g in (whole.gains.alpha, whole.gains.beta, whole.gains.gamma)))
-    return TrackResult(
-        time=cut(whole.time),
-        measured=cut(whole.measured),
-        predicted=cut(whole.predicted),
-        filtered=cut(whole.filtered),
-        velocity=cut(whole.velocity),
-        acceleration=cut(whole.acceleration),
-        innovation=cut(whole.innovation),
-        gains=gains,
-        state=None,
-    )
+    kept = {name: cut(getattr(whole, name)) for name in whole.kept if name != "gains"}
+    if "gains" in whole.kept:
+        gains = whole.gains
+        kept["gains"] = Gains(*(cut(g) for g in (gains.alpha, gains.beta, gains.gamma)))
+    return TrackResult.of(cut(whole.time), cut(whole.measured), None, kept)
 
 
 def join_tracks(results: Sequence[TrackResult]) -> TrackResult:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
@@ -46,7 +47,7 @@ def run_iter(
     tracker: LaneTracker | str,
     pieces: Iterable[Piece],
     *,
-    sigma: float | None = None,
+    sigma: ArrayLike | None = None,
     keep: Sequence[str] | None = None,
 ) -> Iterator[TrackedPiece]:
     """Run a tracker over many tracks, piece by piece.
@@ -59,8 +60,9 @@ def run_iter(
     pieces : iterable of Piece
         Rows of any tracks in any order, but the rows of each track in order of time. A track may
         continue from piece to piece. See `fuzzytrack.io.read_pieces`.
-    sigma : float, optional
-        Standard deviation of the plots (m).
+    sigma : float or sequence of float, optional
+        Standard deviation of the plots (m), for pieces that have none of their own; one, or one
+        for each axis.
     keep : sequence of str, optional
         Which outputs to keep, of predicted, filtered, velocity, acceleration, innovation and gains;
         all unless given.
@@ -118,7 +120,7 @@ class OpenTracks:
     def __init__(
         self,
         tracker: LaneTracker | str,
-        sigma: float | None = None,
+        sigma: ArrayLike | None = None,
         keep: Sequence[str] | None = None,
     ) -> None:
         self.tracker, self.sigma = as_lane_tracker(tracker), sigma
@@ -168,13 +170,14 @@ class OpenTracks:
         return self._store
 
     def _advance(self, piece: Piece, outputs: Mapping[str, Array], store: TrackStore) -> None:
-        codes = piece.ids.codes
+        tracks = piece.tracks
+        codes = tracks.codes
         order = np.argsort(codes, kind="stable")
         counts = np.bincount(codes)
         starts = np.cumsum(counts) - counts
         present = np.flatnonzero(counts)
         counts, starts = counts[present], starts[present]
-        names = [piece.ids.names[k] for k in present.tolist()]
+        names = [tracks.names[k] for k in present.tolist()]
         slots = np.array([self._slot.get(name, -1) for name in names])
         new = slots < 0
         last = np.full(len(slots), math.nan)
@@ -188,8 +191,9 @@ class OpenTracks:
             steps = np.arange(counts[members[0]])[:, None]
             places = order[starts[members] + steps]
             state = None if new[members[0]] else store.gather(slots[members])
+            sigma = self.sigma if piece.sigma is None else piece.sigma[places]
             result = self.tracker.run(
-                piece.time[places], piece.plots[places], self.sigma, state=state, keep=self._keep
+                piece.time[places], piece.plots[places], sigma, state=state, keep=self._keep
             )
             for name, values in outputs.items():
                 values[places] = getattr(result.gains if name in GAINS else result, name)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fuzzytrack.arrays import Array, Mask
+from fuzzytrack.io.findings import Findings
 from fuzzytrack.recordings.streaming import TrackedPiece
 from fuzzytrack.trackers.result import TrackResult
 
@@ -27,6 +28,8 @@ class Totals:
         Sum of the durations of the tracks (s).
     squares, alpha, beta : tuple of float and int
         Sum and number of the squared lengths of innovations (m²), and of the gains.
+    findings : Findings
+        Faults of the plots, and notes about them.
     """
 
     tracks: int = 0
@@ -36,6 +39,7 @@ class Totals:
     squares: tuple[float, int] = (0.0, 0)
     alpha: tuple[float, int] = (0.0, 0)
     beta: tuple[float, int] = (0.0, 0)
+    findings: Findings = field(default_factory=Findings)
 
     @classmethod
     def of(cls, results: Sequence[TrackResult]) -> Totals:
@@ -82,6 +86,7 @@ class Totals:
         self.squares = _more(self.squares, other.squares)
         self.alpha = _more(self.alpha, other.alpha)
         self.beta = _more(self.beta, other.beta)
+        self.findings.merge(other.findings)
 
     @property
     def summary(self) -> dict[str, float]:

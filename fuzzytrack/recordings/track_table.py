@@ -13,7 +13,7 @@ from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
 from fuzzytrack.io import motion
 from fuzzytrack.io.angles import wrapped
-from fuzzytrack.io.columns import Columns
+from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.geodetic import LocalFrame
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.time_cells import numbers
@@ -63,26 +63,21 @@ class TrackTable:
     epoch: int | None = None
 
     @classmethod
-    def of(
-        cls, columns: Columns, tracker: Tracker, *, noise_is_known: bool, **known: Any
-    ) -> TrackTable:
+    def of(cls, decoder: PlotDecoder, tracker: Tracker) -> TrackTable:
         """Table of the tracks of a tracker.
 
         Parameters
         ----------
-        columns : Columns
-            Of the recording.
+        decoder : PlotDecoder
+            How the recording is read: its columns, its clock, its place on the earth, its noise.
         tracker : Tracker
             Makes the tracks. There are columns of γ unless it uses none, and of standard deviations
-            if it keeps a covariance.
-        noise_is_known : bool
-            Whether the plots have standard deviations.
-        **known
-            Other attributes.
+            if it keeps a covariance and the noise of the plots is known.
         """
+        columns, clock = decoder.columns, decoder.clock
         deviation = (
             isinstance(tracker, LaneTracker)
-            and (noise_is_known or tracker.sigma_w is not None)
+            and (decoder.noise_is_known or tracker.sigma_w is not None)
             and tracker.knows_variance(len(columns.axes))
         )
         return cls(
@@ -91,7 +86,10 @@ class TrackTable:
             columns.axes,
             gamma=_uses_gamma(tracker),
             deviation=deviation,
-            **known,
+            segment=True,
+            period=decoder.period,
+            frame=decoder.frame,
+            epoch=clock.origin if clock.dated else None,
         )
 
     @property

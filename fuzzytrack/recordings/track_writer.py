@@ -13,7 +13,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.formats import PARQUET, check_table, table_writer
-from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.piece import Piece, joined_cells
 from fuzzytrack.io.recording import Recording
 from fuzzytrack.io.table import Words
 from fuzzytrack.io.track_formats import check_geo_tracks, is_geo, write_geo_tracks
@@ -212,13 +212,14 @@ def table_of_tracks(
 
 
 def _table_of(recording: Recording, outputs: Mapping[str, Array]) -> TrackTable:
-    columns = recording.columns
+    columns, tracks = recording.columns, recording.tracks
     return TrackTable(
         columns.time,
         columns.id,
         columns.axes,
         gamma=bool((np.nan_to_num(outputs["gamma"]) != 0.0).any()),
         deviation="position_variance" in outputs,
+        segment=any(track.segment for track in tracks),
     )
 
 
@@ -238,13 +239,18 @@ def _joined_tracks(
 def _one_piece(recording: Recording, results: Sequence[TrackResult]) -> Piece:
     """Plots of all tracks, one track after the other."""
     lengths = [len(result.time) for result in results]
-    ids = tuple(track.id for track in recording.tracks)
+    tracks = recording.tracks
+    # A track in several segments is there several times.
+    numbers: dict[str, int] = {}
+    codes = [numbers.setdefault(track.id, len(numbers)) for track in tracks]
     return Piece(
-        Words(ids, np.repeat(np.arange(len(ids)), lengths)),
+        Words(tuple(numbers), np.repeat(codes, lengths)),
         _joined(results, "time"),
         _joined(results, "measured"),
         np.arange(1, sum(lengths) + 1),
         recording.file,
+        time_cells=joined_cells([track.time_cells for track in tracks]),
+        segments=np.repeat([track.segment for track in tracks], lengths),
     )
 
 

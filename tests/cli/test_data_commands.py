@@ -19,10 +19,12 @@ def rows(path):
 
 
 def test_track_prints_a_summary(run, plots):
-    result = run("track", plots)
+    result = run("track", plots, "--sigma", "2")
     assert result.exit_code == 0
     assert result.stderr == ""
-    head, _, row = result.stdout.splitlines()
+    columns, sigma, head, _, row = result.stdout.splitlines()
+    assert columns == "columns: time t; no id: one track; position x, y"
+    assert sigma == "sigma: 2"
     assert head.split() == [
         "plots",
         "missed",
@@ -90,8 +92,10 @@ def test_innovation_rms_by_hand(run, plots):
 def test_many_tracks_give_totals_only(run, csv):
     text = "".join(f"{t},{k},{t * k}\n" for k in range(30) for t in range(4))
     result = run("track", csv("t,id,x\n" + text), "--id", "id")
-    assert len(result.stdout.splitlines()) == 3
-    assert result.stdout.splitlines()[2].split()[:4] == ["all", "30", "120", "0"]
+    columns, *lines = result.stdout.splitlines()
+    assert columns == "columns: time t; id id; position x"
+    assert len(lines) == 3
+    assert lines[2].split()[:4] == ["all", "30", "120", "0"]
 
 
 def test_several_tracks_in_one_picture(run, csv, tmp_path):
@@ -137,7 +141,7 @@ def test_bad_files(fails, csv, command, text, message):
         (["--axes", "x,q"], "--axes: no column 'q'"),
         (["--axes", "x,"], "--axes: a name is missing"),
         (["--sigma", "0"], "--sigma must be > 0"),
-        (["--sigma", "a"], "Invalid value for '--sigma'"),
+        (["--sigma", "a"], "--sigma: no column 'a'"),
         (["--sgima", "1"], "--sgima"),
         (["-o", "no/out.csv"], "no/out.csv: there is no folder"),
         (["-o", "out.xls"], "cannot write .xls"),
@@ -159,7 +163,7 @@ def test_bad_options(fails, plots, monkeypatch, words, message):
 def test_no_file_and_folder_for_a_file(fails, tmp_path):
     assert fails("track", tmp_path / "a.csv").endswith("a.csv: No such file or directory")
     assert fails("track", tmp_path).endswith("holds no Parquet and no CSV files")
-    assert "Missing argument 'FILE|DIR'" in fails("track")
+    assert "Missing argument 'FILE|DIR...'" in fails("track")
 
 
 def test_bad_name_cannot_reach_the_terminal(fails):
@@ -185,7 +189,7 @@ def test_interruption(run, plots, monkeypatch, tmp_path):
     def interrupt(*args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(tracking, "run_tracks", interrupt)
+    monkeypatch.setattr(tracking, "track_recording", interrupt)
     result = run("track", plots)
     assert result.exit_code == 130
     assert result.stderr == "interrupted\n"
@@ -216,7 +220,7 @@ def test_compare(run, truth):
     for name in (*comparing.DEFAULT_TRACKERS.split(","), "the plots themselves"):
         assert f"\n{name} " in first.stdout
     assert max(map(len, first.stdout.splitlines())) <= 80
-    assert first.stdout.count("±") == 6
+    assert first.stdout.count("±") == 8
 
 
 def test_compare_as_json(run, truth):

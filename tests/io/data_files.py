@@ -3,10 +3,20 @@
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from fuzzytrack.io.columns import Columns
+from fuzzytrack.io import Columns, PlotFiles, Reading
 
 #: Columns of the files that `parquet` makes.
 XY = Columns("t", "id", ("x", "y"))
+
+
+def plot_files(*files, **options):
+    """Files that are read with some options."""
+    return PlotFiles.of([str(file) for file in files], Reading.of(**options))
+
+
+def pieces_of(*files, rows=None, progress=None, **options):
+    """Pieces of such files."""
+    return list(plot_files(*files, **options).pieces(rows=rows, progress=progress))
 
 
 def written(tmp_path, text, name="f.csv"):

@@ -11,7 +11,7 @@ from fuzzytrack.io import read_tracks
         ({"time": "tt"}, "`time`: no column 'tt'; did you mean 't'"),
         ({"axes": ["x", "q"]}, "`axes`: no column 'q'; allowed: t, id, x"),
         ({"axes": []}, "`axes`: needs at least one"),
-        ({"id": "ID"}, "`id`: no column 'ID'; did you mean 'id'"),
+        ({"id": "idd"}, "`id`: no column 'idd'; did you mean 'id'"),
         ({"axes": ["x", "x"]}, "column 'x' cannot serve twice"),
         ({"id": "id"}, "row 3, column id: an empty cell; expected some text"),
     ],

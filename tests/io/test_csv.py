@@ -4,10 +4,10 @@ import threading
 
 import numpy as np
 import pytest
-from data_files import XY, written
+from data_files import pieces_of, written
 
 from fuzzytrack import DataError
-from fuzzytrack.io import csv, find_columns, read_pieces, read_tracks
+from fuzzytrack.io import csv, read_tracks
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.text_form import TextForm
 
@@ -17,7 +17,7 @@ BAD = {
     "other digits": ("t,x\n0,١\n", r"row 2, column x"),
     "infinite": ("t,x\n0,0\n1,-inf\n", r"row 3, column x: '-inf'; expected a finite"),
     "overflow": ("t,x\n0,1e999\n", r"row 2, column x: '1e999'"),
-    "time empty": ("t,x\n,0\n", r"row 2, column t: an empty cell; expected a finite number$"),
+    "time empty": ("t,x\n,0\n", r"row 2, column t: an empty cell; expected a time$"),
     "time nan": ("t,x\nnan,0\n", r"row 2, column t: 'nan'"),
     "time clock": ("t,x\n12:30,0\n", r"row 2, column t: '12:30'"),
     "long": (f"t,x\n0,{'q' * 99}\n", r"'q{40}…'"),
@@ -48,14 +48,14 @@ def test_broken_csv(tmp_path):
     ):
         csv.write_bytes(content)
         with pytest.raises(DataError, match=message):
-            find_columns([str(csv)])
+            pieces_of(csv)
     for content, message in (
         (b"id,t,x,y\na,0,1,\xff\n", "row 2: byte 0xff is not UTF-8"),
         (b'id,t,x,y\na,0,1,"1"2\n', "row 2: not CSV"),
     ):
         csv.write_bytes(content)
         with pytest.raises(DataError, match=message):
-            list(read_pieces([str(csv)], XY))
+            pieces_of(csv, id="id")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes")

@@ -6,10 +6,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from data_files import XY, parquet, written
+from data_files import parquet, pieces_of, plot_files, written
 
 from fuzzytrack import DataError
-from fuzzytrack.io import Columns, find_columns, read_pieces, read_tracks
+from fuzzytrack.io import read_tracks
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.text_form import TextForm
 
@@ -25,7 +25,7 @@ def test_parquet(tmp_path):
     ("columns", "message"),
     [
         ({"t": [0, 1], "x": ["1", "q"]}, "row 2, column x: 'q'"),
-        ({"t": [0, None], "x": [1, 2]}, "row 2, column t: 'nan'; expected a finite number$"),
+        ({"t": [0, None], "x": [1, 2]}, "row 2, column t: 'nan'; expected a time$"),
         ({"t": [0, 1], "x": [1.0, math.inf]}, "row 2, column x: 'inf'"),
     ],
 )
@@ -46,14 +46,14 @@ def test_bad_parquet(tmp_path, columns, message):
 )
 def test_words_of_any_type(tmp_path, ids):
     path = parquet(tmp_path / "f.parquet", ids, [0, 0, 1], [1.0, 2.0, 3.0])
-    (piece,) = read_pieces([path], XY)
+    (piece,) = pieces_of(path, id="id")
     assert piece.ids.names == ("a", "b")
     np.testing.assert_array_equal(piece.ids.codes, [0, 1, 0])
 
 
 def test_numbers_as_text(tmp_path):
     path = parquet(tmp_path / "f.parquet", ["a", "a"], [0, 1], ["1.5", "na"], [1.0, 2.0])
-    (piece,) = read_pieces([path], XY)
+    (piece,) = pieces_of(path, id="id")
     np.testing.assert_array_equal(piece.plots, [[1.5, 1], [math.nan, 2]])
 
 
@@ -66,9 +66,7 @@ def test_broken_files(tmp_path):
     bad = tmp_path / "f.parquet"
     bad.write_bytes(b"PAR1 no")
     with pytest.raises(DataError, match="is not a Parquet file"):
-        find_columns([str(bad)])
-    with pytest.raises(DataError, match="is not a Parquet file"):
-        list(read_pieces([str(bad)], XY))
+        pieces_of(bad, id="id")
 
 
 def test_a_broken_page_names_its_file(tmp_path):
@@ -78,7 +76,7 @@ def test_a_broken_page_names_its_file(tmp_path):
     content[4:pages] = b"\xff" * (pages - 4)
     path.write_bytes(content)
     with pytest.raises(DataError, match=r"f\.parquet: is not a Parquet file that can be read"):
-        list(read_pieces([str(path)], XY))
+        pieces_of(path, id="id")
     with pytest.raises(DataError, match=r"f\.parquet: is not a Parquet file that can be read"):
         read_tracks(path, time="t", axes=["x", "y"])
 
@@ -98,7 +96,7 @@ def test_one_large_row_group_is_not_read_at_once(tmp_path):
     )
     assert pq.ParquetFile(path).num_row_groups == 1
     before, highest = pa.total_allocated_bytes(), 0
-    for piece in read_pieces([str(path)], Columns("t", "", ("x",)), rows=50_000):
+    for piece in plot_files(path).pieces(rows=50_000):
         assert len(piece.time) == 50_000
         highest = max(highest, pa.total_allocated_bytes() - before)
     assert highest < 2 * n * 8 / 3
@@ -110,12 +108,12 @@ def test_words_of_a_dictionary_that_are_not_used(tmp_path):
     path = parquet(
         tmp_path / "f.parquet", ids.take(pa.array([0, 1, 3])), [0, 0, 1], [1.0, 2.0, 3.0]
     )
-    (piece,) = read_pieces([path], XY)
+    (piece,) = pieces_of(path, id="id")
     assert piece.ids.names == ("b", "a")
     assert list(piece.ids) == ["b", "a", "b"]
     assert [track.id for track in read_tracks(path, id="id").tracks] == ["b", "a"]
     path = parquet(tmp_path / "g.parquet", ids, [0, 0, 1, 1], [1.0, 2.0, 3.0, 4.0])
-    for read in (lambda: list(read_pieces([path], XY)), lambda: read_tracks(path, id="id")):
+    for read in (lambda: pieces_of(path, id="id"), lambda: read_tracks(path, id="id")):
         with pytest.raises(DataError, match="row 3, column id: an empty cell; expected some text"):
             read()
 
@@ -139,7 +137,7 @@ def test_decimals_and_whole_numbers_with_gaps(tmp_path):
 def test_a_whole_file_is_one_piece(tmp_path, row_group_size):
     ids = pa.array(["b", "a", "b", "c", "a"])
     path = parquet(tmp_path / "f.parquet", ids, range(5), np.arange(5.0), None, row_group_size)
-    (piece,) = read_pieces([path], XY, rows=None)
+    (piece,) = pieces_of(path, id="id")
     assert piece.ids.names == ("b", "a", "c")
     assert list(piece.ids) == ids.to_pylist()
     np.testing.assert_array_equal(piece.rows, [1, 2, 3, 4, 5])

@@ -4,10 +4,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from data_files import XY, parquet, written
+from data_files import XY, parquet, pieces_of, plot_files, written
 
 from fuzzytrack import DataError
-from fuzzytrack.io import Columns, Piece, find_columns, read_pieces, read_tracks, recording_files
+from fuzzytrack.io import Columns, Piece, read_tracks, recording_files
 
 
 def table(pieces):
@@ -27,7 +27,7 @@ def table(pieces):
 def test_guessed_columns_gaps_and_one_track(tmp_path):
     path = written(tmp_path, "\ufeffid,time, y_m ,x_m,note\na,0,2,1,é\nb,1,,nan,\n\nc,2,NA,3,x\n")
     recording = read_tracks(path)
-    assert (recording.time, recording.id, recording.axes) == ("time", "", ("x_m", "y_m"))
+    assert recording.columns == Columns("time", "", ("x_m", "y_m"))
     (track,) = recording.tracks
     assert track.id == ""
     np.testing.assert_array_equal(track.time, [0, 1, 2])
@@ -60,7 +60,7 @@ BAD_TIMES = {
         r"row 4, column t: time 1 is earlier than 2 in row 3.*sort",
     ),
     "repeated": ("t,x\n0,0\n0,1\n", r"row 3, column t: time 0 repeats that of row 2.*`id`"),
-    "no time": ("a,x\n0,0\n", r"no column t, t_s, time or time_s.*`time`; there are a, x"),
+    "no time": ("a,x\n0,0\n", r"no column t, time or timestamp.*`time`; there are a, x"),
     "no axes": ("t,a\n0,0\n", r"no columns x, y.*`axes`; there are t, a"),
 }
 
@@ -84,7 +84,7 @@ def test_times_are_judged_within_an_id_and_the_first_wrong_row_is_named(tmp_path
 def test_what_cannot_be_opened(tmp_path):
     with pytest.raises(FileNotFoundError):
         read_tracks(tmp_path / "no.csv")
-    with pytest.raises(IsADirectoryError):
+    with pytest.raises(DataError, match="holds no"):
         read_tracks(tmp_path)
 
 
@@ -95,9 +95,9 @@ def test_what_cannot_be_opened(tmp_path):
 def test_csv_in_pieces_of_any_size(tmp_path, rows):
     path = tmp_path / "f.csv"
     path.write_text("id,t,x,y\n007,0,1,2\n\nb,0,3,\n007,1,nan,6\nb,1,7,8\n")
-    assert find_columns([str(path)], id="id") == XY
+    assert plot_files(path, id="id").columns == XY
     shares = []
-    found = list(read_pieces([str(path)], XY, rows=rows, progress=shares.append))
+    found = pieces_of(path, id="id", rows=rows, progress=shares.append)
     assert max(len(piece.time) for piece in found) == min(rows, 4)
     assert [row[:3] for row in table(found)] == [
         (2, "007", 0.0), (4, "b", 0.0), (5, "007", 1.0), (6, "b", 1.0),
@@ -113,7 +113,7 @@ def test_parquet_in_pieces_of_any_size(tmp_path, rows, row_group_size):
     ids, x = [7, 8, 7, 8, 9], [1.0, None, math.nan, 4.0, 5.0]
     times = [0, 0, 1, 1, 2]
     path = parquet(tmp_path / "f.parquet", ids, times, x, row_group_size=row_group_size)
-    found = list(read_pieces([path], XY, rows=rows))
+    found = pieces_of(path, id="id", rows=rows)
     assert all(len(piece.time) <= rows for piece in found)
     assert [row[:3] for row in table(found)] == [
         (k + 1, str(id), float(t)) for k, (id, t) in enumerate(zip(ids, times, strict=True))
@@ -123,21 +123,20 @@ def test_parquet_in_pieces_of_any_size(tmp_path, rows, row_group_size):
 
 
 def test_one_track_and_no_rows(tmp_path):
-    columns = Columns("t", "", ("x",))
     path = parquet(tmp_path / "f.parquet", ["a", "b"], [0, 1], [1.0, 2.0])
-    (piece,) = read_pieces([path], columns)
+    (piece,) = pieces_of(path, axes=["x"])
     assert piece.ids.names == ("",)
     assert piece.plots.shape == (2, 1)
     none = parquet(tmp_path / "g.parquet", pa.array([], pa.string()), [], [])
-    for rows in (5, None):
-        assert list(read_pieces([none], XY, rows=rows)) == []
+    assert len(pieces_of(path)) == 1
     with pytest.raises(DataError, match=r"g\.parquet: holds no rows, only column names"):
         read_tracks(none)
 
 
-def test_a_piece_has_a_row_at_least():
+def test_a_piece_has_a_row_at_least(tmp_path):
+    path = parquet(tmp_path / "f.parquet", ["a"], [0.0], [1.0])
     with pytest.raises(ValueError, match="rows must be at least 1, got 0"):
-        list(read_pieces([], XY, rows=0))
+        pieces_of(path, rows=0)
 
 
 BAD = {
@@ -153,7 +152,7 @@ BAD = {
 def test_rows_are_counted_over_pieces(tmp_path, x, ids, message, rows):
     path = parquet(tmp_path / "f.parquet", ids, [0.0, 1.0, 2.0], x, [0.0, 0.0, 0.0])
     with pytest.raises(DataError, match=message):
-        list(read_pieces([path], XY, rows=rows))
+        pieces_of(path, id="id", rows=rows)
 
 
 def test_pieces_of_arrays():
@@ -191,10 +190,10 @@ def test_files_that_do_not_agree(tmp_path):
     first = parquet(tmp_path / "a.parquet", ["a"], [0.0], [1.0])
     other = parquet(tmp_path / "b.parquet", [1], [0.0], [1.0])
     with pytest.raises(DataError, match=r"b.parquet: column id: is int64; expected string, as in"):
-        find_columns([first, other], id="id")
-    assert find_columns([first, other]) == Columns("t", "", ("x", "y"))
+        plot_files(first, other, id="id")
+    assert plot_files(first, other).columns == Columns("t", "", ("x", "y"))
     pq.write_table(pa.table({"id": ["a"], "t": [0.0], "x": [1.0]}), tmp_path / "c.parquet")
     with pytest.raises(DataError, match=r"c.parquet: no column 'y', which .*a.parquet has"):
-        find_columns([first, str(tmp_path / "c.parquet")])
+        plot_files(first, tmp_path / "c.parquet")
     with pytest.raises(DataError, match="column 'x' cannot serve twice"):
-        find_columns([first], id="x")
+        plot_files(first, id="x")

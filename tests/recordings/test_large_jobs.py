@@ -16,7 +16,7 @@ def plots(tmp_path):
 
 def test_a_job_counts_with_and_without_a_file(plots, tmp_path):
     job = LargeJob.of(plots, FIXED, rows=2, id="id", axes=["y", "x"])
-    assert job.columns.axes == ("y", "x")
+    assert job.files.columns.axes == ("y", "x")
     totals = job.track(None)
     assert (totals.tracks, totals.plots, totals.missed, totals.duration) == (2, 5, 1, 4.0)
     shares = []

@@ -1,0 +1,226 @@
+"""Options that say how plots are read, shared by the commands that read them."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable
+from functools import wraps
+from typing import Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.io.reading import Reading
+
+__all__ = ["reads_plots", "reads_positions"]
+
+_Text = str | None
+
+
+def _option(metavar: str, help: str, *names: str) -> Any:
+    return typer.Option(*names, metavar=metavar, help=help)
+
+
+def plot_reading(
+    time: Annotated[
+        _Text, _option("COL", "Column of time, or DATE,TIME. [default: t, time, timestamp…]")
+    ] = None,
+    time_unit: Annotated[
+        _Text, _option("s|ms|us|ns", "Unit of numeric times. [default: by name or size]")
+    ] = None,
+    wrap: Annotated[
+        str, _option("S|auto|none", "Period of a clock that starts again, in seconds.")
+    ] = "auto",
+    id: Annotated[
+        _Text, _option("COL", "Column that identifies the track. [default: one track]")
+    ] = None,
+    axes: Annotated[
+        _Text, _option("COL,COL", "Columns of position. [default: x,y,z or x_m,y_m,z_m]")
+    ] = None,
+    polar: Annotated[
+        _Text, _option("RANGE,AZIMUTH[,ELEVATION]", "Columns of polar plots; angles in degrees.")
+    ] = None,
+    azimuth_from: Annotated[
+        str, _option("north|east", "Azimuth clockwise from north, or the other way from east.")
+    ] = "north",
+    geodetic: Annotated[
+        _Text, _option("LAT,LON[,ALT]", "Columns of latitude and longitude, in degrees.")
+    ] = None,
+    angle: Annotated[_Text, _option("COL", "Column of a bare angle, in degrees.")] = None,
+    cartesian: Annotated[
+        bool, typer.Option("--cartesian", help="Take --axes as positions whatever their names.")
+    ] = False,
+    site: Annotated[
+        _Text, _option("LAT,LON[,ALT]", "Place of the sensor, in degrees and meters.")
+    ] = None,
+    own_ship: Annotated[
+        _Text, _option("COL,COL", "Columns of the position of a moving sensor.")
+    ] = None,
+    own_heading: Annotated[
+        _Text, _option("COL", "Column of its heading (degrees), for relative azimuths.")
+    ] = None,
+    sigma: Annotated[
+        str,
+        _option("S|S,S|COL|COL,COL|auto", "Standard deviation of the plots, m; or its columns."),
+    ] = "auto",
+    sigma_range: Annotated[_Text, _option("S|COL", "The same of range, m.")] = None,
+    sigma_azimuth: Annotated[_Text, _option("S|COL", "The same of azimuth, degrees.")] = None,
+    sigma_elevation: Annotated[_Text, _option("S|COL", "The same of elevation, degrees.")] = None,
+    valid: Annotated[
+        list[str] | None,
+        _option("COL=LOW:HIGH", "Values that are positions; others are missed plots."),
+    ] = None,
+    duplicates: Annotated[
+        str, _option("error|first|last|mean", "What to do with equal times in a track.")
+    ] = "error",
+    stale: Annotated[
+        bool, typer.Option("--stale", help="Take a position that repeats as a missed plot.")
+    ] = False,
+    least_step: Annotated[
+        _Text, _option("S", "Shortest time to start a track with. [default: from the plots]")
+    ] = None,
+    max_gap: Annotated[
+        str, _option("S|auto|none", "A longer time without a plot ends the track, in seconds.")
+    ] = "auto",
+    max_coast: Annotated[
+        _Text, _option("S", "Leave out rows without a plot after this time, in seconds.")
+    ] = None,
+    delimiter: Annotated[_Text, _option("CHAR|tab", "Between cells. [default: recognized]")] = None,
+    decimal: Annotated[_Text, _option(".|,", "Decimal mark. [default: recognized]")] = None,
+    na: Annotated[_Text, _option("A,B", "More words for a missing number: NULL,-999.")] = None,
+    comment: Annotated[str, _option("CHAR", "Lines that begin with it are left out.")] = "#",
+    columns: Annotated[
+        _Text, _option("A,B,C", "Names of the columns, for a file that has none.")
+    ] = None,
+    format: Annotated[_Text, _option("NAME", "Format of the file. [default: by its name]")] = None,
+    sort: Annotated[bool, typer.Option("--sort", help="Put the plots in order of time.")] = False,
+) -> Reading:
+    """How plots are read, from what the options say."""
+    times = None if time is None else options.names(time, "--time")
+    if times is not None and len(times) > 2:
+        raise ValueError(f"--time: expected COL, or DATE,TIME, got {time!r}")
+    return Reading.of(
+        time=None if times is None else times[0] if len(times) == 1 else tuple(times),
+        time_unit=time_unit,
+        wrap=_number_or(wrap, "--wrap", {"auto": "auto", "none": None}),
+        id=id,
+        axes=_names(axes, "--axes"),
+        polar=_names(polar, "--polar"),
+        azimuth_from=azimuth_from,
+        geodetic=_names(geodetic, "--geodetic"),
+        angle=angle,
+        cartesian=cartesian,
+        site=_numbers(site, "--site"),
+        own_ship=_names(own_ship, "--own-ship"),
+        own_heading=own_heading,
+        sigma=_sigma(sigma, "--sigma"),
+        sigma_range=_sigma(sigma_range, "--sigma-range"),
+        sigma_azimuth=_sigma(sigma_azimuth, "--sigma-azimuth"),
+        sigma_elevation=_sigma(sigma_elevation, "--sigma-elevation"),
+        valid=tuple(each for text in valid or () for each in _ranges(text)),
+        duplicates=duplicates,
+        stale=math.inf if stale else None,
+        least_step=None if least_step is None else _number_or(least_step, "--least-step", {}),
+        max_gap=_number_or(max_gap, "--max-gap", {"auto": "auto", "none": None}),
+        max_coast=None if max_coast is None else _number_or(max_coast, "--max-coast", {}),
+        delimiter={"tab": "\t", "\\t": "\t"}.get(delimiter or "", delimiter),
+        decimal=decimal,
+        na=() if na is None else tuple(word.strip() for word in na.split(",")),
+        comment=comment,
+        columns=_names(columns, "--columns"),
+        format=format,
+        sort=sort,
+    )
+
+
+def reads_plots(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of `plot_reading`, in place of its argument ``reading``."""
+    return _with_options(command, ())
+
+
+def reads_positions(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command these options but those of noise, for positions that are exact."""
+    return _with_options(command, _NOISE)
+
+
+_NOISE = ("sigma", "sigma_range", "sigma_azimuth", "sigma_elevation")
+
+
+def _with_options(command: Callable[..., None], without: tuple[str, ...]) -> Callable[..., None]:
+    own = inspect.signature(command, eval_str=True).parameters
+    every = inspect.signature(plot_reading, eval_str=True).parameters
+    added = {name: each for name, each in every.items() if name not in without}
+
+    @wraps(command)
+    def with_options(**given: Any) -> None:
+        reading = plot_reading(**{name: given.pop(name) for name in added})
+        command(reading=reading, **given)
+
+    parameters: list[inspect.Parameter] = []
+    for parameter in own.values():
+        parameters += added.values() if parameter.name == "reading" else [parameter]
+    ordered = sorted(parameters, key=lambda each: each.default is not inspect.Parameter.empty)
+    with_options.__signature__ = inspect.Signature(ordered)  # type: ignore[attr-defined]
+    with_options.__annotations__ = {each.name: each.annotation for each in ordered}
+    del with_options.__wrapped__  # its signature is another one
+    return with_options
+
+
+# -------------------------------------------------------------------- texts
+
+
+def _names(text: str | None, option: str) -> tuple[str, ...] | None:
+    return None if text is None else tuple(options.names(text, option))
+
+
+def _number_or(text: str, option: str, words: dict[str, Any]) -> Any:
+    """A number > 0, or one of some words."""
+    if text in words:
+        return words[text]
+    value = _number(text)
+    if value is None or not 0 < value < math.inf:
+        more = "".join(f", or {word}" for word in words)
+        raise ValueError(f"{option}: expected a number > 0{more}, got {text!r}")
+    return value
+
+
+def _numbers(text: str | None, option: str) -> tuple[float, ...] | None:
+    if text is None:
+        return None
+    found = [_number(part) for part in text.split(",")]
+    if not all(value is not None and math.isfinite(value) for value in found):
+        raise ValueError(f"{option}: expected numbers with commas between them, got {text!r}")
+    return tuple(value for value in found if value is not None)
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _sigma(text: str | None, option: str) -> float | str | tuple[float | str, ...] | None:
+    """Numbers, names of columns, or "auto"."""
+    if text is None:
+        return None
+    found: list[float | str] = []
+    for name in options.names(text, option):
+        value = _number(name)
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"{option} must be > 0, got {value:g}")
+        found.append(name if value is None else value)
+    return found[0] if len(found) == 1 else tuple(found)
+
+
+def _ranges(text: str) -> list[tuple[str, float, float]]:
+    """Columns with their limits, written COL=LOW:HIGH."""
+    found = []
+    for name, limits in options.pairs(text, "--valid").items():
+        low, colon, high = limits.partition(":")
+        least, most = (_number(part) for part in (low or "-inf", high or "inf"))
+        if not colon or least is None or most is None or not least <= most:
+            raise ValueError(f"--valid: expected COL=LOW:HIGH, got {text!r}")
+        found.append((name, least, most))
+    return found

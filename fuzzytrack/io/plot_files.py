@@ -1,0 +1,393 @@
+"""Files of plots: what they hold is found out once, then they are read piece by piece."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.angles import unwrapped
+from fuzzytrack.io.cleaning import Cleaner
+from fuzzytrack.io.columns import Columns, choose_columns, looks_like_identity
+from fuzzytrack.io.decoder import Noise, PlotDecoder, joined_cells
+from fuzzytrack.io.description import PlotDescription
+from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.formats import open_table
+from fuzzytrack.io.geodetic import LocalFrame
+from fuzzytrack.io.noise_estimate import NoiseEstimate, estimate_noise
+from fuzzytrack.io.piece import Piece, joined
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.source import Source
+from fuzzytrack.io.table import Table, no_rows
+from fuzzytrack.io.times import Clock
+from fuzzytrack.reprs import summary
+from fuzzytrack.tasks import Progress
+
+__all__ = ["ROWS", "Input", "PlotFiles", "Survey"]
+
+#: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
+ROWS = 250_000
+
+#: A file by its name, or columns that are in memory.
+Input = str | Source
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """What the first rows of a recording show.
+
+    Attributes
+    ----------
+    interval : float
+        Median time between plots of a track (s); NaN if no track has two.
+    noise : NoiseEstimate or None
+        Standard deviations of what is measured: of range (m) and angles (deg) of polar plots; None
+        if it was given, or cannot be estimated.
+    missing : str
+        Why there is no estimate, where one was wanted.
+    """
+
+    interval: float = math.nan
+    noise: NoiseEstimate | None = None
+    missing: str = ""
+
+    def __repr__(self) -> str:
+        return summary(self, "interval", "noise")
+
+
+@dataclass(frozen=True)
+class PlotFiles:
+    """Files of plots that are read in one way.
+
+    Attributes
+    ----------
+    inputs : tuple of str or Source
+        Names of files, in the order in which they are read, or columns in memory.
+    reading : Reading
+        What a user says about them.
+    decoder : PlotDecoder
+        How rows become plots.
+    notes : tuple of str
+        What was guessed, and what a user might want to know, each in a sentence.
+    """
+
+    inputs: tuple[Input, ...]
+    reading: Reading
+    decoder: PlotDecoder
+    notes: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        return summary(self, "columns", inputs=len(self.inputs))
+
+    @classmethod
+    def of(cls, inputs: Sequence[Input], reading: Reading | None = None) -> PlotFiles:
+        """Find out what files hold, from the names of their columns and from their first rows.
+
+        Parameters
+        ----------
+        inputs : sequence of str or Source
+            At least one, from `recording_files`.
+        reading : Reading, optional
+            How they are read.
+
+        Raises
+        ------
+        DataError
+            If a column is missing or could be meant in two ways, its type differs between files, or
+            there are no rows.
+        OSError
+            If a file cannot be read.
+        """
+        reading = reading or Reading()
+        with _opened(inputs[0], reading) as source:
+            description = reading.description.over(getattr(source, "description", None))
+            names, types = tuple(source.types), dict(source.types)
+            units = getattr(source, "units", {})
+            columns = choose_columns(names, source.file, description, units)
+        _check_alike(inputs, reading, {name: types[name] for name in columns.kinds})
+        table = _first_table(inputs, reading, columns)
+        decoder = _decoder(columns, description, table, units)
+        return cls(tuple(inputs), reading, decoder, _notes(names, columns, decoder.clock))
+
+    @property
+    def columns(self) -> Columns:
+        """Columns of the files that are time, identity, position and noise."""
+        return self.decoder.columns
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the files, for messages."""
+        return tuple(map(_name, self.inputs))
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Files on disk."""
+        return tuple(each for each in self.inputs if isinstance(each, str) and each != "-")
+
+    def only(self, number: int) -> PlotFiles:
+        """One of the files by itself, read as it is among the others."""
+        return replace(self, inputs=self.inputs[number : number + 1])
+
+    def absolute(self) -> PlotFiles:
+        """The same files under names that other processes understand."""
+        inputs = (os.path.abspath(e) if isinstance(e, str) else e for e in self.inputs)
+        return replace(self, inputs=tuple(inputs))
+
+    def cleaner(self) -> Cleaner:
+        """What takes the faults out of the pieces; it has a memory, so each run needs its own."""
+        decoder = self.decoder
+        rules = replace(self.reading.cleaning, wrap=decoder.description.wrap)
+        clock, column = decoder.clock, self.columns.time
+        return Cleaner(rules, clock.period, column=column, show=clock.show)
+
+    def cleaned(self, pieces: Iterable[Piece], findings: Findings) -> Iterator[Piece]:
+        """Take the faults out of the pieces of a run, and count them at the end.
+
+        Parameters
+        ----------
+        pieces : iterable of Piece
+            From `pieces`, or rows of it.
+        findings : Findings
+            Gets the counts.
+        """
+        cleaner = self.cleaner()
+        for piece in pieces:
+            yield cleaner.advance(piece)
+        rest = cleaner.finish()
+        if rest is not None:
+            yield rest
+        findings.cleaning = findings.cleaning + cleaner.counts
+
+    def pieces(
+        self,
+        *,
+        rows: int | None = ROWS,
+        findings: Findings | None = None,
+        progress: Progress | None = None,
+    ) -> Iterator[Piece]:
+        """Read the files piece by piece, one after the other; faults are still in them.
+
+        Parameters
+        ----------
+        rows : int or None
+            Rows of a piece, at most; None makes each file one piece.
+        findings : Findings, optional
+            Gets what was left out, and the notes of the files.
+        progress : callable, optional
+            Called with the share that has been read.
+
+        Yields
+        ------
+        Piece
+            At least one row; no piece of a file without rows.
+
+        Raises
+        ------
+        DataError
+            If a file does not hold such tracks; names row, column and value.
+        ValueError
+            If `rows` is less than 1.
+        OSError
+            If a file cannot be read.
+
+        Notes
+        -----
+        Holds one piece, and of a Parquet file about a megabyte a column, at a time, however large
+        the row groups are.
+        """
+        if rows is not None and rows < 1:
+            raise ValueError(f"rows must be at least 1, got {rows}")
+        found = Findings() if findings is None else findings
+        found.note(self.notes)
+        sizes = [_size(each) for each in self.inputs]
+        total, before = max(1, sum(sizes)), 0
+        for each, size in zip(self.inputs, sizes, strict=True):
+
+            def watch(share: float, before: int = before, size: int = size) -> None:
+                if progress is not None:
+                    progress((before + share * size) / total)
+
+            with _opened(each, self.reading) as source:
+                for table in source.tables(self.columns.kinds, rows, watch):
+                    yield self.decoder.decode(table, found.impossible)
+                found.note(getattr(source, "notes", ()))
+            before += size
+
+    def surveyed(self) -> tuple[PlotFiles, Survey]:
+        """Look at the first rows for what is not given: noise, and the usual time between plots.
+
+        Returns
+        -------
+        PlotFiles
+            The same files with what was found.
+        Survey
+
+        Raises
+        ------
+        DataError
+            As `pieces`.
+        """
+        table = _first_table(self.inputs, self.reading, self.columns)
+        found = self.survey(self.decoder.measured(table))
+        return self.with_survey(found), found
+
+    def survey(self, measured: Piece) -> Survey:
+        """What rows show that were read by `PlotDecoder.measured`."""
+        if self.reading.sort:
+            measured = measured.take(np.lexsort((measured.time, measured.ids.codes)))
+        clean = joined(list(self.cleaned([measured], Findings())))
+        codes = clean.ids.codes
+        order = np.argsort(codes, kind="stable")
+        steps = np.diff(clean.time[order])
+        steps = steps[(np.diff(codes[order]) == 0) & (steps > 0)]
+        interval = float(np.median(steps)) if len(steps) else math.nan
+        if self.decoder.noise_is_known:
+            return Survey(interval)
+        try:
+            return Survey(interval, self._noise(clean))
+        except DataError as error:
+            return Survey(interval, missing=str(error))
+
+    def _noise(self, clean: Piece) -> NoiseEstimate:
+        plots = clean.plots
+        if self.columns.position == "angle":
+            period = self.decoder.period or math.inf
+            plots = unwrapped(plots[:, 0], clean.ids.codes, period)[:, None]
+        elif self.columns.position == "polar":
+            turn = 2 * math.pi / self.decoder.radians(1)
+            angle = unwrapped(plots[:, 1], clean.ids.codes, turn)
+            plots = np.column_stack([plots[:, :1], angle, plots[:, 2:]])
+        return estimate_noise(clean.time, plots, clean.ids.codes)
+
+    def with_survey(self, survey: Survey) -> PlotFiles:
+        """Files with what a survey has found, as far as nothing else was said."""
+        decoder, cleaning = self.decoder, self.reading.cleaning
+        if survey.noise is not None and not decoder.noise_is_known:
+            decoder = decoder.with_estimate(*_estimate(survey.noise, decoder))
+        if cleaning.least_step is None and survey.interval > 0:
+            cleaning = replace(cleaning, least_step=_LEAST_STEP * survey.interval)
+        return replace(self, decoder=decoder, reading=replace(self.reading, cleaning=cleaning))
+
+
+# A start waits until this part of the usual time between plots has passed.
+_LEAST_STEP = 0.1
+
+
+def _estimate(
+    found: NoiseEstimate, decoder: PlotDecoder
+) -> tuple[Sequence[float], Sequence[float]]:
+    """Standard deviations and their errors, angles of polar plots in degrees."""
+    count = len(found.sigma)
+    if decoder.noise_is_polar:
+        units = [1.0, *(math.degrees(decoder.radians(k)) for k in range(1, count))]
+        return (found.sigma * units).tolist(), (found.standard_error * units).tolist()
+    if found.axes_differ:
+        return found.sigma.tolist(), found.standard_error.tolist()
+    return (found.pooled,) * count, (found.pooled_error,) * count
+
+
+def _decoder(
+    columns: Columns, description: PlotDescription, table: Table, units: Mapping[str, str]
+) -> PlotDecoder:
+    cells = joined_cells(table, columns)
+    unit = units.get(columns.time)
+    clock = Clock.of(cells, unit=description.time_unit, name=columns.time, unit_of_name=unit)
+    frame = None
+    if description.site is not None:
+        frame = LocalFrame(*description.site)
+    decoder = PlotDecoder(columns, description, clock, frame, _given_noise(columns, description))
+    if frame is None and (columns.position == "geodetic" or decoder.own_ship_is_geodetic):
+        names = columns.own_ship if decoder.own_ship_is_geodetic else columns.read
+        decoder = replace(decoder, frame=_frame_at_first(table, names))
+    return decoder
+
+
+def _frame_at_first(table: Table, names: Sequence[str]) -> LocalFrame:
+    """Frame about the first position that is one."""
+    places = np.stack([table.numbers[name] for name in names], axis=1)
+    good = (np.abs(places[:, 0]) <= 90) & (np.abs(places[:, 1]) <= 180)
+    if not good.any():
+        raise DataError(
+            f"{table.file}: columns {', '.join(names)}: no latitude and longitude within "
+            "-90 to 90 and -180 to 180"
+        )
+    first = places[int(np.argmax(good))]
+    altitude = first[2] if len(first) == 3 and math.isfinite(first[2]) else 0.0
+    return LocalFrame(float(first[0]), float(first[1]), float(altitude))
+
+
+def _given_noise(columns: Columns, said: PlotDescription) -> Noise:
+    n_axes = len(columns.axes)
+    if said.sigma not in (None, "auto"):
+        given = said.sigma if isinstance(said.sigma, tuple) else (said.sigma,) * n_axes
+        if len(given) != n_axes:
+            raise DataError(f"sigma: {len(given)} given for {n_axes} axes; give one, or one each")
+        return tuple(_checked("sigma", value) for value in given)
+    if columns.position != "polar":
+        return ()
+    polar = (said.sigma_range, said.sigma_azimuth, said.sigma_elevation)[:n_axes]
+    names = ("sigma_range", "sigma_azimuth", "sigma_elevation")
+    return tuple(_checked(name, value) for name, value in zip(names, polar, strict=False))
+
+
+def _checked(name: str, value: float | str | None) -> float | str | None:
+    if value is None or isinstance(value, str):
+        return value
+    if not 0 < value < math.inf:
+        raise ValueError(f"{name}: must be > 0, got {value:g}")
+    return float(value)
+
+
+def _notes(names: tuple[str, ...], columns: Columns, clock: Clock) -> tuple[str, ...]:
+    notes = [clock.note] if clock.note else []
+    free = looks_like_identity(names, columns)
+    if free:
+        notes.append(
+            f"column {free!r} looks like an identity and is not used; `id`={free} makes a track of "
+            "each"
+        )
+    return tuple(notes)
+
+
+def _check_alike(inputs: Sequence[Input], reading: Reading, types: dict[str, str]) -> None:
+    """Check that all files have the columns of the first one, of the same types."""
+    first = _name(inputs[0])
+    for each in inputs[1:]:
+        with _opened(each, reading) as source:
+            others = source.types
+        file = _name(each)
+        for name, kind in types.items():
+            if name not in others:
+                raise DataError(f"{file}: no column {name!r}, which {first} has")
+            if others[name] != kind:
+                raise DataError(
+                    f"{file}: column {name}: is {others[name]}; expected {kind}, as in {first}"
+                )
+
+
+def _first_table(inputs: Sequence[Input], reading: Reading, columns: Columns) -> Table:
+    """First rows of the first file that has any."""
+    for each in inputs:
+        with _opened(each, reading) as source:
+            for table in source.tables(columns.kinds, ROWS):
+                return table
+    raise no_rows(_name(inputs[0]))
+
+
+def _opened(each: Input, reading: Reading) -> AbstractContextManager[Source]:
+    if isinstance(each, str):
+        return open_table(each, reading.form, format=reading.format)
+    return nullcontext(each)
+
+
+def _name(each: Input) -> str:
+    return each if isinstance(each, str) else each.file
+
+
+def _size(each: Input) -> int:
+    return os.path.getsize(each) if isinstance(each, str) and os.path.isfile(each) else 0

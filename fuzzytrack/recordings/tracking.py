@@ -1,0 +1,297 @@
+"""Recorded plots tracked in one call: what the command ``track`` does, in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.data_frame import FrameSource
+from fuzzytrack.io.files import PathLike
+from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.plot_files import Input, PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import Recording, read_recording, recording_files
+from fuzzytrack.recordings.notebook import html_of
+from fuzzytrack.recordings.ragged import join_tracks, run_tracks
+from fuzzytrack.recordings.totals import Totals
+from fuzzytrack.recordings.track_table import TrackTable
+from fuzzytrack.recordings.track_writer import table_of_tracks, write_tracks
+from fuzzytrack.reprs import summary
+from fuzzytrack.schedulers import FuzzyScheduler
+from fuzzytrack.tasks import Progress
+from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_tracker, make_tracker
+from fuzzytrack.trackers.result import KEPT, ON_REQUEST, TrackResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "DEFAULT_TRACKER",
+    "PreparedPlots",
+    "TrackedRecording",
+    "prepare",
+    "track",
+    "track_recording",
+]
+
+#: The tracker of recorded plots unless another is named, and the one that takes its place where
+#: the noise of the plots is not known.
+DEFAULT_TRACKER, DEFAULT_WITHOUT_NOISE = "maneuver", "stiffness-damping"
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedPlots:
+    """Plots and the tracker for them, with all that was found out before the run.
+
+    Attributes
+    ----------
+    files : PlotFiles
+        The plots; noise and cleaning are settled.
+    tracker : Tracker
+        The tracker.
+    table : TrackTable
+        Columns of the tracks.
+    findings : Findings
+        Notes so far.
+    """
+
+    files: PlotFiles
+    tracker: Tracker
+    table: TrackTable
+    findings: Findings = field(default_factory=Findings)
+
+    def __repr__(self) -> str:
+        return summary(self, "tracker", files=len(self.files.inputs))
+
+
+def inputs_of(plots: Any) -> tuple[Input, ...]:
+    """Files and columns of what a user gives as plots; see `track`."""
+    if isinstance(plots, str) or hasattr(plots, "__fspath__"):
+        return recording_files(plots)
+    if isinstance(plots, Sequence) and not isinstance(plots, tuple):
+        return tuple(each for part in plots for each in inputs_of(part))
+    return (FrameSource.of(plots),)
+
+
+def prepare(plots: Any, tracker: Tracker | str | None, reading: Reading) -> PreparedPlots:
+    """Look at plots before they are tracked.
+
+    Parameters
+    ----------
+    plots, tracker
+        As for `track`.
+    reading : Reading
+        How they are read.
+
+    Raises
+    ------
+    DataError, ValueError, OSError
+        As `track`.
+    """
+    files, survey = PlotFiles.of(inputs_of(plots), reading).surveyed()
+    findings = Findings()
+    chosen = DEFAULT_TRACKER if tracker is None else tracker
+    if survey.missing and tracker is None:
+        chosen = DEFAULT_WITHOUT_NOISE
+        findings.note([f"{survey.missing}; tracked with {chosen}, as {DEFAULT_TRACKER} needs it"])
+    elif survey.missing:
+        findings.note([survey.missing])
+    made = _suited(chosen, files)
+    return PreparedPlots(files, made, TrackTable.of(files.decoder, made), findings)
+
+
+def _suited(tracker: Tracker | str, files: PlotFiles) -> Tracker:
+    """The tracker; where axes have different noise, and it can, with a covariance for each axis."""
+    made = as_tracker(tracker)
+    decoder = files.decoder
+    differ = isinstance(decoder.sigma, tuple) or decoder.noise_is_polar
+    scheduler = made.scheduler if isinstance(made, AlphaBetaTracker) else None
+    if (
+        differ
+        and isinstance(tracker, str)
+        and isinstance(scheduler, FuzzyScheduler)
+        and "axes" in scheduler.outputs.parameters
+        and ":axes=" not in tracker
+    ):
+        return make_tracker(f"{tracker}:axes=own")
+    return made
+
+
+def track(
+    plots: Any,
+    tracker: Tracker | str | None = None,
+    *,
+    progress: Progress | None = None,
+    **options: Any,
+) -> TrackedRecording:
+    """Track recorded plots, as the command ``fuzzytrack track`` does.
+
+    Parameters
+    ----------
+    plots : path, data frame, mapping or tuple
+        A file or folder, or several in a list; a data frame of pandas or polars, a table of Arrow;
+        a mapping from names to columns; or (time, plots), arrays of shape (n,) and (n, n_axes).
+    tracker : Tracker or str, optional
+        The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`. Unless given,
+        ``maneuver``, or ``stiffness-damping`` if the noise of the plots can neither be estimated
+        nor is given.
+    progress : callable, optional
+        Called with the share of the work that is done.
+    **options
+        How the plots are read: attributes of `fuzzytrack.io.PlotDescription` (time, id, axes,
+        polar, geodetic, sigma…), of `fuzzytrack.io.Cleaning` (duplicates, max_gap…) and of
+        `fuzzytrack.io.TextForm` (delimiter, na…), ``format``, and ``sort``. Without `sigma` the
+        standard deviation of the plots is estimated from them.
+
+    Returns
+    -------
+    TrackedRecording
+
+    Raises
+    ------
+    DataError
+        If the plots cannot be used; names row, column and value.
+    TypeError
+        If there is no such option, or the plots are something else.
+    ValueError
+        If the value of an option is wrong, or the tracker needs a standard deviation that is not
+        known.
+    OSError
+        If a file cannot be read.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import fuzzytrack as ft
+    >>> t = np.arange(8.0)
+    >>> tracked = ft.track((t, np.stack([10 * t, 5 * t], axis=1)), sigma=2.0)
+    >>> tracked.results[0].velocity[-1].round(3)
+    array([10.,  5.])
+    """
+    return track_recording(plots, tracker, Reading.of(**options), progress)
+
+
+def track_recording(
+    plots: Any, tracker: Tracker | str | None, reading: Reading, progress: Progress | None = None
+) -> TrackedRecording:
+    """Track recorded plots that are read in a given way; see `track`."""
+    prepared = prepare(plots, tracker, reading)
+    recording = read_recording(prepared.files, progress)
+    prepared.findings.merge(recording.findings)
+    sigmas = [track.sigma for track in recording.tracks]
+    known = [sigma for sigma in sigmas if sigma is not None]
+    results = run_tracks(
+        prepared.tracker,
+        [(track.time, track.plots) for track in recording.tracks],
+        prepared.files.decoder.sigma,
+        progress,
+        sigmas=known if len(known) == len(sigmas) else None,
+        keep=(*KEPT, *ON_REQUEST) if prepared.table.deviation else None,
+    )
+    return TrackedRecording(
+        recording, tuple(results), prepared.tracker, prepared.table, prepared.findings
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class TrackedRecording:
+    """The tracks of a recording.
+
+    Attributes
+    ----------
+    recording : Recording
+        The plots, track by track.
+    results : tuple of TrackResult
+        What the tracker made of each.
+    tracker : Tracker
+        The tracker.
+    table : TrackTable
+        Columns of the table of tracks.
+    findings : Findings
+        Faults that were put right, and notes.
+    """
+
+    recording: Recording
+    results: tuple[TrackResult, ...]
+    tracker: Tracker
+    table: TrackTable
+    findings: Findings
+
+    def __repr__(self) -> str:
+        return summary(self, "tracker", tracks=len(self.results), plots=self.totals.plots)
+
+    def __len__(self) -> int:
+        """Number of tracks."""
+        return len(self.results)
+
+    @property
+    def totals(self) -> Totals:
+        """Sums over all tracks."""
+        return Totals.of(self.results)
+
+    def to_pandas(self) -> Any:
+        """Table of all tracks, one row for each plot, as `write` writes it.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        DataError
+            If pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise DataError("pandas is not installed; pip install 'fuzzytrack[pandas]'") from None
+        return pandas.DataFrame(table_of_tracks(self.recording, self.results, self.table))
+
+    def write(
+        self,
+        path: PathLike,
+        progress: Progress | None = None,
+        *,
+        quote_formulas: bool = False,
+    ) -> None:
+        """Write the tracks to a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path
+            Its suffix says the format; see `fuzzytrack.recordings.write_tracks`.
+        progress : callable, optional
+            Called with the share that has been written.
+        quote_formulas : bool
+            Whether cells that a spreadsheet would run are quoted.
+
+        Raises
+        ------
+        DataError, OSError
+            As `fuzzytrack.recordings.write_tracks`.
+        """
+        write_tracks(
+            path,
+            self.recording,
+            self.results,
+            progress,
+            table=self.table,
+            quote_formulas=quote_formulas,
+        )
+
+    def plot(self) -> Figure:
+        """Picture of the tracks, see `fuzzytrack.plot_track`."""
+        from fuzzytrack.plotting import plot_track
+
+        names = self.recording.columns.axes
+        return plot_track(join_tracks(self.results), axes_names=names, unit="")[0]
+
+    def _repr_html_(self) -> str:
+        """Table of the first tracks, with a small picture, for notebooks."""
+        ids = [track.id for track in self.recording.tracks]
+        tracks = list(zip(ids, self.results, strict=True))
+        return html_of(repr(self), tracks, self.findings.sentences(), self.plot())
