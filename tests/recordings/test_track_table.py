@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 
 from fuzzytrack import DataError
-from fuzzytrack.io import Columns, Piece
+from fuzzytrack.io import Columns, Piece, PlotDescription
+from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.geodetic import LocalFrame
+from fuzzytrack.io.times import Clock
 from fuzzytrack.recordings.track_table import TrackRows, TrackTable
 from fuzzytrack.trackers.catalog import make_tracker
 
@@ -84,9 +86,10 @@ def test_columns_of_one_name(axes, name):
 )
 def test_what_a_tracker_gives(tracker, gamma, deviation):
     columns, made = Columns("t", "id", ("x", "y")), make_tracker(tracker)
-    table = TrackTable.of(columns, made, noise_is_known=True, segment=True)
+    unknown = PlotDecoder(columns, PlotDescription(), Clock())
+    table = TrackTable.of(replace(unknown, noise=(2.0, 2.0)), made)
     assert (table.gamma, table.deviation, table.segment) == (gamma, deviation, True)
-    assert not TrackTable.of(columns, made, noise_is_known=False).deviation
+    assert not TrackTable.of(unknown, made).deviation
     assert ("position_variance" in table.outputs) == deviation
     if not gamma:
         plots = np.random.default_rng(0).normal(0, 9, (30, 2))

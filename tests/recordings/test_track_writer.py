@@ -56,11 +56,11 @@ def test_the_table_to_the_letter(tmp_path):
     track_and_write(read_tracks(source, id="id"), tmp_path / "out.csv", tracker)
     assert (tmp_path / "out.csv").read_text() == (
         "id,t,x,x_predicted,x_filtered,x_velocity,x_innovation,alpha_x,beta_x,coasted,since_last\n"
-        "b,0.0,0.0,,0.0,0.0,,,,false,0.0\n"
-        "b,1.0,8.0,,8.0,8.0,,,,false,0.0\n"
-        "b,2.0,20.0,16.0,20.0,10.0,4.0,1.0,0.5,false,0.0\n"
-        "b,3.0,,30.0,30.0,10.0,,,,true,1.0\n"
-        "a,0.0,5.0,,5.0,0.0,,,,false,0.0\n"
+        "b,0,0.0,,0.0,0.0,,,,false,0.0\n"
+        "b,1,8.0,,8.0,8.0,,,,false,0.0\n"
+        "b,2,20.0,16.0,20.0,10.0,4.0,1.0,0.5,false,0.0\n"
+        "b,3,,30.0,30.0,10.0,,,,true,1.0\n"
+        "a,0,5.0,,5.0,0.0,,,,false,0.0\n"
     )
 
 
