@@ -22,6 +22,7 @@ from fuzzytrack.io.csv_lines import CHUNK, Part, line_parts, text_lines
 from fuzzytrack.io.recognition import HEAD, encoding_of, recognize
 from fuzzytrack.io.table import Column, Kind, Table, Values, is_number, silent
 from fuzzytrack.io.text_form import PLAIN, TextForm
+from fuzzytrack.io.track_text import iso_times
 from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
 
@@ -196,7 +197,9 @@ def _cells(
 ) -> Sequence[Any]:
     if not isinstance(values, np.ndarray):
         return quoted(values)
-    cells: list[Any] = values.tolist()
+    if values.dtype.kind == "b":
+        return ["true" if value else "false" for value in values.tolist()]
+    cells: list[Any] = iso_times(values) if values.dtype.kind == "M" else values.tolist()
     for index in np.flatnonzero(np.isnan(values)).tolist():
         cells[index] = None
     return cells

@@ -216,7 +216,8 @@ def parquet_writer(path: Path, types: Mapping[str, str], compact: bool) -> Any:
         differ takes much time; columns of words have repeated values in any case.
     """
     arrow = import_pyarrow(str(path))
-    schema = arrow.schema([(name, arrow.type_for_alias(kind)) for name, kind in types.items()])
+    aliases = {name: kind.replace("datetime64", "timestamp") for name, kind in types.items()}
+    schema = arrow.schema([(name, arrow.type_for_alias(kind)) for name, kind in aliases.items()])
     words = [name for name, kind in types.items() if kind == "string"]
     return arrow.parquet.ParquetWriter(path, schema, use_dictionary=compact or words or False)
 
