@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.trackers import trackers
 
 ROOT = Path(__file__).resolve().parents[1]
-REGISTRIES = (schedulers, trackers, normalizations)
+REGISTRIES = (schedulers, trackers, normalizations, readers)
 PAGES = [
     ROOT / "README.md",
     *sorted((ROOT / "docs").glob("*.md")),
@@ -79,3 +80,9 @@ def test_rule_bases_on_the_page_load(page):
 def test_there_is_something_to_run():
     assert sum(len(blocks(page, "python")) for page in PAGES) >= 8
     assert any(b.startswith("rulebase:") for page in PAGES for b in blocks(page, "yaml"))
+
+
+def test_the_page_of_plugins_lists_every_registry():
+    page = (ROOT / "docs" / "plugins.md").read_text()
+    table = re.findall(r"^\| [\w ]+ \| \{class\}.* \| `(fuzzytrack\.\w+)` \|$", page, flags=re.M)
+    assert sorted(table) == sorted(registry.group for registry in REGISTRIES)

@@ -75,12 +75,19 @@ def test_the_command_line_tracks_with_the_plugin(environment, tmp_path):
     assert json.loads(done.stdout)["total"]["alpha"] == 0.5
 
 
-def test_the_tracker_is_that_of_the_page():
-    page = (ROOT / "docs" / "write-a-tracker.md").read_text()
-    code = re.search(r"^```python\n(.*?)^```", page, re.M | re.S)[1]
-    package = ROOT / "examples" / "plugin" / "fuzzytrack_two_speed" / "averaged.py"
+@pytest.mark.parametrize(
+    ("page", "module", "words"),
+    [
+        ("write-a-tracker", "averaged", ('@trackers.register("averaged")\n', ", trackers")),
+        ("formats", "sonar_log", ('@readers.register("sonar-log")\n', ", readers")),
+    ],
+)
+def test_the_plugin_is_that_of_the_page(page, module, words):
+    text = (ROOT / "docs" / f"{page}.md").read_text()
+    code = re.search(r"^```python\n(.*?)^```", text, re.M | re.S)[1]
+    package = ROOT / "examples" / "plugin" / "fuzzytrack_two_speed" / f"{module}.py"
     # An entry point stands in the place of the decorator.
-    for word in ('@trackers.register("averaged")\n', ", trackers"):
+    for word in words:
         code = code.replace(word, "")
     assert package.read_text().endswith(code)
 

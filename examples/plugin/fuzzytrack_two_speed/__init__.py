@@ -1,4 +1,4 @@
-"""A gain scheduler, a tracker and a normalization, found by fuzzytrack through entry points."""
+"""A scheduler, a tracker, a normalization and a reader, found by fuzzytrack by entry points."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -6,8 +6,9 @@ from typing import ClassVar
 from fuzzytrack.normalizations import Normalization
 from fuzzytrack.schedulers import GainScheduler
 from fuzzytrack_two_speed.averaged import Averaged
+from fuzzytrack_two_speed.sonar_log import SonarLog
 
-__all__ = ["Averaged", "SoftSign", "TwoSpeed"]
+__all__ = ["Averaged", "SoftSign", "SonarLog", "TwoSpeed"]
 
 
 @dataclass(frozen=True)

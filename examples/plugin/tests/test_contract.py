@@ -1,8 +1,10 @@
 import pytest
-from fuzzytrack_two_speed import Averaged, SoftSign, TwoSpeed
+from fuzzytrack_two_speed import Averaged, SoftSign, SonarLog, TwoSpeed
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.io import open_table
+from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.testing import check_scheduler, parametrize_with_checks
@@ -13,6 +15,7 @@ def test_entry_points_are_found():
     assert schedulers.get("two-speed") is TwoSpeed
     assert trackers.get("averaged") is Averaged
     assert normalizations.get("soft-sign") is SoftSign
+    assert readers.get("sonar-log") is SonarLog
 
 
 @parametrize_with_checks([TwoSpeed(threshold=2.0), Averaged(quiet=0.2)])
@@ -35,3 +38,13 @@ def test_the_normalization_feeds_a_rule_base():
     assert "chan" in text
     rules = ft.loads_rulebase(text.replace("normalization: chan", "normalization: soft-sign"))
     check_scheduler(ft.FuzzyScheduler(rules))
+
+
+def test_the_reader_is_chosen_by_the_end_of_the_name(tmp_path):
+    file = tmp_path / "run.slog"
+    file.write_text("0 A7 1500 44\n-- link lost --\n2 A7 1510 44.5\n")
+    with open_table(str(file)) as source:
+        (table,) = source.tables({"id": "word", "range": "gaps"}, rows=None)
+    assert list(table.words["id"]) == ["A7", "A7"]
+    assert list(table.numbers["range"]) == [1500.0, 1510.0]
+    assert source.notes == [f"{file}: lines that are no plot: 1 left out, first at line 2"]
