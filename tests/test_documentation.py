@@ -1,14 +1,17 @@
 """The code on the pages runs, and the rule bases on them load."""
 
 import re
+import shlex
 import sys
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import fuzzytrack as ft
+from fuzzytrack.cli.app import app
 from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
@@ -27,6 +30,13 @@ def blocks(page, language):
     return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), flags=re.M | re.S)
 
 
+def shown_files(page):
+    """Files that a page shows in full: their names, followed by their text."""
+    return re.findall(
+        r"^`([\w.]+)`[^\n]*:\n\n```text\n(.*?)^```", page.read_text(), flags=re.M | re.S
+    )
+
+
 @pytest.fixture
 def a_folder_with_plots(tmp_path, monkeypatch):
     """The quick start's file of plots, in an empty working directory."""
@@ -41,6 +51,8 @@ def a_folder_with_plots(tmp_path, monkeypatch):
 def test_python_on_the_page_runs(page, monkeypatch):
     known = {registry: registry.names() for registry in REGISTRIES}
     rules = ft.load_rulebase("stiffness-damping")
+    for name, text in shown_files(page):
+        Path(name).write_text(text)
     # Classes of the page pickle: they can be found in a module.
     module = ModuleType("page")
     monkeypatch.setitem(sys.modules, "page", module)
@@ -75,6 +87,35 @@ def test_rule_bases_on_the_page_load(page):
     for block in blocks(page, "yaml"):
         if block.startswith("rulebase:"):
             ft.loads_rulebase(block, page.name)
+
+
+def shown_commands(page):
+    """Commands of a page, each with the lines of its output that are shown."""
+    for block in blocks(page, "console"):
+        for command in re.split(r"^\$ ", block, flags=re.M)[1:]:
+            words, _, output = command.replace("\\\n", " ").partition("\n")
+            yield words, output.splitlines()
+
+
+@pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
+def test_commands_on_the_page_of_real_data_run(tmp_path, monkeypatch):
+    """Their files are those on the page; of the output, each line that is shown is there."""
+    page = ROOT / "docs" / "real-data.md"
+    monkeypatch.chdir(tmp_path)
+    for name, text in shown_files(page):
+        (tmp_path / name).write_text(text)
+    commands = list(shown_commands(page))
+    assert len(commands) >= 8
+    runner = CliRunner()
+    for words, expected in commands:
+        program, *arguments = shlex.split(words)
+        assert program == "fuzzytrack"
+        result = runner.invoke(app, arguments, catch_exceptions=False)
+        fails = any(line.startswith("error:") for line in expected)
+        assert result.exit_code == (2 if fails else 0), f"{words}\n{result.output}"
+        found = [line.split() for line in result.output.splitlines()]
+        for line in expected:
+            assert line.split() in found, f"{words}\n{line}\nis not in\n{result.output}"
 
 
 def test_there_is_something_to_run():
