@@ -56,9 +56,6 @@ _UNITS = {word: unit for unit, words in _WORDS.items() for word in words.split()
 
 # Differences of counts below fit in 64 bits.
 _LARGEST = 2**62
-# Below, a number of seconds in double precision is nearer to its own microsecond than to another,
-# and its nanoseconds fit in 64 bits.
-_MICROSECONDS = 2.0**32
 # The nanoseconds of any two numbers up to this differ by what double precision can hold; those
 # below the other are none.
 _LARGE, _SMALL = 1e290, 1e-290
@@ -250,52 +247,38 @@ def numbers(cells: list[str]) -> Array | None:
 
 
 def number_counts(cells: list[str], scale: int) -> Counts | None:
-    """Nanoseconds of numbers in a unit of `scale` ns."""
+    """Nanoseconds of numbers in a unit of `scale` ns: of their digits, with the point left out."""
     text = _lines(cells)
-    if text is None or "_" in text:
+    if text is None or text.strip("0123456789+-.\n"):
         return None
-    decimals = len(cells[0]) - 1 - cells[0].find(".") if "." in cells[0] else 0
-    places = len(str(scale)) - 1
-    if decimals <= places and _all_have(cells, text, decimals):
-        return _integers(text.replace(".", "").split(), scale // 10**decimals, len(cells))
-    if scale == SCALES["s"] and not re.search(r"\.[0-9]{7}|[eE]", text):
-        values = numbers(cells)
-        if values is not None and np.abs(values).max() < _MICROSECONDS:
-            return _microseconds(values)
-    return None
+    decimals, places = _decimals(cells, text), len(str(scale)) - 1
+    if decimals is None or decimals.max() > places:
+        return None
+    try:
+        digits = np.array(list(map(int, text.replace(".", "").split("\n")[:-1])), dtype=np.int64)
+    except (ValueError, OverflowError):
+        return None
+    factors = np.array([10**place for place in range(places, -1, -1)])[decimals]
+    if (np.abs(digits) > _LARGEST // factors).any():
+        return None
+    return np.asarray(digits * factors)
+
+
+def _decimals(cells: list[str], text: str) -> Counts | None:
+    """How many digits each cell has after its point; None if one has two points."""
+    if "." not in text:
+        return np.zeros(len(cells), dtype=np.int64)
+    points = np.array([cell.find(".") for cell in cells])
+    there = points >= 0
+    if text.count(".") != there.sum():
+        return None
+    return np.where(there, np.array(list(map(len, cells))) - 1 - points, 0)
 
 
 def _lines(cells: list[str]) -> str | None:
     """Cells as lines; None if one is not ASCII, or of several lines."""
     text = "\n".join(cells) + "\n"
     return text if text.isascii() and text.count("\n") == len(cells) else None
-
-
-def _all_have(cells: list[str], text: str, decimals: int) -> bool:
-    """Whether all cells have so many digits after the point."""
-    if not decimals:
-        return "." not in text
-    place = -decimals - 1
-    return text.count(".") == len(cells) and all(cell[place : place + 1] == "." for cell in cells)
-
-
-def _integers(cells: list[str], scale: int, count: int) -> Counts | None:
-    try:
-        values = np.array(list(map(int, cells)), dtype=np.int64)
-    except (ValueError, OverflowError):
-        return None
-    if len(values) != count:
-        return None
-    if int(values.max()) * scale > _LARGEST or int(values.min()) * scale < -_LARGEST:
-        return None
-    return values * scale
-
-
-def _microseconds(values: Array) -> Counts:
-    """Nanoseconds of numbers of seconds, which have at most six decimals."""
-    whole = np.floor(values)
-    parts = np.rint((values - whole) * 1e6).astype(np.int64)
-    return np.asarray(whole.astype(np.int64) * SCALES["s"] + parts * 1000)
 
 
 def date_counts(cells: list[str]) -> Counts | None:
@@ -362,6 +345,6 @@ def array_counts(values: NDArray[Any], scale: int) -> Counts | None:
     counts = seconds + np.rint((values - whole) * scale).astype(np.int64)
     if scale == SCALES["s"]:
         # The double that is the nearest to a time in microseconds has been written as that time.
-        rounded = _microseconds(values)
+        rounded = seconds + np.rint((values - whole) * 1e6).astype(np.int64) * 1000
         counts = np.where(whole + (rounded - seconds) / 1e9 == values, rounded, counts)
     return np.asarray(counts)
