@@ -27,6 +27,7 @@ from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.plot_files import ROWS
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Track
+from fuzzytrack.io.track_formats import check_geo_tracks, is_geo
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.tracking import (
     DEFAULT_TRACKER,
@@ -66,9 +67,16 @@ def track(
     output: Annotated[
         str | None,
         typer.Option(
-            "--output", "-o", metavar="OUT.csv|DIR", help="Write the tracks (or .parquet)."
+            "--output",
+            "-o",
+            metavar="OUT.csv|DIR",
+            help="Write the tracks (or .parquet; .geojson, .kml, .czml or .gpx).",
         ),
     ] = None,
+    quote_formulas: Annotated[
+        bool,
+        typer.Option("--quote-formulas", help="In CSV, quote text that a spreadsheet would run."),
+    ] = False,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE.png", help="Draw the tracks (or .pdf, .svg…).")
     ] = None,
@@ -109,15 +117,15 @@ def track(
             if apart:
                 totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
             else:
-                totals = job.track(output, watch)
+                totals = job.track(output, watch, quote_formulas=quote_formulas)
         run = _Run.of(prepared, totals)
     else:
         _look_ahead(files[0], output, plot)
         with progress("tracking") as watch:
-            tracked = track_recording(files[0], tracker, reading, watch)
+            tracked = track_recording(files[0], tracker, reading, watch, output)
         if output is not None:
             with progress("writing") as watch:
-                tracked.write(output, watch)
+                tracked.write(output, watch, quote_formulas=quote_formulas)
         if plot is not None:
             save_picture(plot, tracked.plot, (files[0],))
         run = _Run.whole(tracked, listed=_LISTED if not json else len(tracked))
@@ -140,7 +148,7 @@ def _is_large(file: str) -> bool:
 def _look_ahead(file: str, output: str | None, plot: str | None) -> None:
     """Find out what cannot be written before the work is done."""
     if output is not None:
-        check_table(output, (file,))
+        (check_geo_tracks if is_geo(output) else check_table)(output, (file,))
     if plot is not None:
         check_picture(plot, (file,))
 

@@ -8,7 +8,6 @@ from typing import Any
 
 from fuzzytrack.io.files import PathLike, check_output_folder
 from fuzzytrack.io.findings import Findings
-from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.plot_files import ROWS, PlotFiles
 from fuzzytrack.io.reading import Reading
@@ -17,6 +16,8 @@ from fuzzytrack.io.table import no_rows
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
+from fuzzytrack.recordings.track_table import TrackTable
+from fuzzytrack.recordings.track_writer import check_tracks
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
@@ -87,7 +88,13 @@ class LargeJob:
         files = PlotFiles.of(recording_files(path), reading)
         return cls(files, made, ROWS if rows is None else rows)
 
-    def track(self, output: PathLike | None, progress: Progress | None = None) -> Totals:
+    def track(
+        self,
+        output: PathLike | None,
+        progress: Progress | None = None,
+        *,
+        quote_formulas: bool = False,
+    ) -> Totals:
         """Track piece by piece.
 
         Parameters
@@ -96,6 +103,8 @@ class LargeJob:
             File for the tracks; see `fuzzytrack.recordings.track_writer`.
         progress : callable, optional
             Called with the share that is done.
+        quote_formulas : bool
+            As for `fuzzytrack.io.table_writer`.
 
         Returns
         -------
@@ -108,11 +117,19 @@ class LargeJob:
             `fuzzytrack.recordings.track_writer`.
         """
         if output is not None:
-            check_table(output, self.files.paths)
+            table = TrackTable.of(self.files.decoder, self.tracker)
+            check_tracks(output, table, self.files.paths)
         findings = Findings()
         pieces = self.files.pieces(rows=self.rows, findings=findings, progress=progress)
         some = _with_rows(pieces, self.files.names[0])
-        totals = track_pieces(self.tracker, self.files, some, output, inputs=self.files.paths)
+        totals = track_pieces(
+            self.tracker,
+            self.files,
+            some,
+            output,
+            inputs=self.files.paths,
+            quote_formulas=quote_formulas,
+        )
         findings.merge(totals.findings)
         totals.findings = findings
         return totals

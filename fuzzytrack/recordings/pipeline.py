@@ -24,6 +24,7 @@ def track_pieces(
     output: PathLike | None,
     *,
     inputs: tuple[PathLike, ...] = (),
+    quote_formulas: bool = False,
 ) -> Totals:
     """Clean and track pieces, count them, and write them as they come.
 
@@ -39,6 +40,8 @@ def track_pieces(
         File for the tracks, if there is to be one.
     inputs : tuple of str or path
         Files that must not be overwritten.
+    quote_formulas : bool
+        As for `fuzzytrack.io.table_writer`.
 
     Returns
     -------
@@ -49,7 +52,8 @@ def track_pieces(
     with ExitStack() as stack:
         write = None
         if output is not None:
-            write = stack.enter_context(track_writer(output, table, inputs))
+            writer = track_writer(output, table, inputs, quote_formulas=quote_formulas)
+            write = stack.enter_context(writer)
         for piece in files.cleaned(pieces, totals.findings):
             tracked = tracks.advance(piece)
             totals.add(tracked)

@@ -17,7 +17,7 @@ from fuzzytrack.recordings.notebook import html_of
 from fuzzytrack.recordings.ragged import join_tracks, run_tracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_table import TrackTable
-from fuzzytrack.recordings.track_writer import table_of_tracks, write_tracks
+from fuzzytrack.recordings.track_writer import check_tracks, table_of_tracks, write_tracks
 from fuzzytrack.reprs import summary
 from fuzzytrack.schedulers import FuzzyScheduler
 from fuzzytrack.tasks import Progress
@@ -176,10 +176,19 @@ def track(
 
 
 def track_recording(
-    plots: Any, tracker: Tracker | str | None, reading: Reading, progress: Progress | None = None
+    plots: Any,
+    tracker: Tracker | str | None,
+    reading: Reading,
+    progress: Progress | None = None,
+    output: PathLike | None = None,
 ) -> TrackedRecording:
-    """Track recorded plots that are read in a given way; see `track`."""
+    """Track recorded plots that are read in a given way; see `track`.
+
+    If the tracks could not be written to `output`, they are not made.
+    """
     prepared = prepare(plots, tracker, reading)
+    if output is not None:
+        check_tracks(output, prepared.table, prepared.files.paths)
     recording = read_recording(prepared.files, progress)
     prepared.findings.merge(recording.findings)
     sigmas = [track.sigma for track in recording.tracks]
@@ -263,7 +272,8 @@ class TrackedRecording:
         Parameters
         ----------
         path : str or path
-            Its suffix says the format; see `fuzzytrack.recordings.write_tracks`.
+            Its suffix says the format: ``.csv`` or ``.parquet``, or for tracks on the earth
+            ``.geojson``, ``.kml``, ``.czml`` or ``.gpx``; see `fuzzytrack.recordings.write_tracks`.
         progress : callable, optional
             Called with the share that has been written.
         quote_formulas : bool
