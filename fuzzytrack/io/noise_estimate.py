@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 
 __all__ = ["NoiseEstimate", "estimate_noise"]
@@ -181,9 +182,9 @@ def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: int) -> _A
     chosen = _Differences.of(times[apart], plots[apart], codes[apart])
     if len(chosen.values) < FEWEST:
         raise DataError(
-            f"too few plots to estimate their noise: axis {axis} has {len(plots)}, with "
-            f"{len(chosen.values)} runs of {_ORDER + 1} plots in one track; {FEWEST} are needed. "
-            "`sigma` gives it"
+            f"too few plots to estimate their noise: axis {axis} has "
+            f"{counted(len(chosen.values), 'run')} of {_ORDER + 1} plots in one track; {FEWEST} "
+            "are needed. `sigma` gives it"
         )
     sigma, used = _deviation(chosen.values)
     # Differences of plots without noise are those of rounding.

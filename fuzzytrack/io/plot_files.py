@@ -44,7 +44,8 @@ class Survey:
     Attributes
     ----------
     interval : float
-        Median time between plots of a track (s); NaN if no track has two.
+        Usual time between plots of a track (s): three quarters are shorter. NaN if no track has two
+        plots.
     noise : NoiseEstimate or None
         Standard deviations of what is measured: of range (m) and angles (deg) of polar plots; None
         if it was given, or cannot be estimated.
@@ -245,7 +246,8 @@ class PlotFiles:
         order = np.argsort(codes, kind="stable")
         steps = np.diff(clean.time[order])
         steps = steps[(np.diff(codes[order]) == 0) & (steps > 0)]
-        interval = float(np.median(steps)) if len(steps) else math.nan
+        # Not the median: of plots in near pairs that is the time within a pair.
+        interval = float(np.quantile(steps, 0.75)) if len(steps) else math.nan
         if self.decoder.noise_is_known:
             return Survey(interval)
         try:

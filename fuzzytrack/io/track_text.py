@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,8 @@ __all__ = ["decimals", "iso_times", "seconds_since", "unicode_text", "xml_text"]
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _SURROGATES = re.compile("[\ud800-\udfff]")
 _REPLACEMENT = "\ufffd"
+# `xml.sax.saxutils` does the same, but imports the network with it, which takes 70 ms.
+_ESCAPED = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
 
 
 def decimals(values: Array) -> list[str]:
@@ -73,4 +74,4 @@ def unicode_text(text: str) -> str:
 def xml_text(text: str) -> str:
     """Text as the content of an element of XML; what XML cannot hold is replaced."""
     # A reader would take a carriage return for a line feed.
-    return escape(_NOT_XML.sub(_REPLACEMENT, text), {"\r": "&#13;"})
+    return _NOT_XML.sub(_REPLACEMENT, text).translate(_ESCAPED)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 from collections.abc import Sequence
-from html import escape
 from typing import TYPE_CHECKING
 
 from fuzzytrack.recordings.totals import Totals
@@ -40,7 +39,9 @@ def html_of(
     figure : Figure
         Picture of the tracks; it is closed.
     """
-    rows = [_row(id, result) for id, result in tracks[:_LISTED]]
+    from html import escape
+
+    rows = [_row(escape(id or "track"), result) for id, result in tracks[:_LISTED]]
     more = len(tracks) - len(rows)
     if more > 0:
         rows.append(f"<tr><td colspan='{1 + len(_HEADS)}'>and {more} more</td></tr>")
@@ -52,7 +53,7 @@ def html_of(
     )
 
 
-def _row(id: str, result: TrackResult) -> str:
+def _row(name: str, result: TrackResult) -> str:
     totals = Totals.of([result]).summary
     numbers = (
         f"{totals['plots']}",
@@ -61,7 +62,7 @@ def _row(id: str, result: TrackResult) -> str:
         f"{totals['innovation_rms']:.4g}",
     )
     cells = "".join(f"<td>{number}</td>" for number in numbers)
-    return f"<tr><th>{escape(id or 'track')}</th>{cells}</tr>"
+    return f"<tr><th>{name}</th>{cells}</tr>"
 
 
 def _picture(figure: Figure) -> str:

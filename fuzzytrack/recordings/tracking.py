@@ -97,7 +97,7 @@ def prepare(plots: Any, tracker: Tracker | str | None, reading: Reading) -> Prep
     chosen = DEFAULT_TRACKER if tracker is None else tracker
     if survey.missing and tracker is None:
         chosen = DEFAULT_WITHOUT_NOISE
-        findings.note([f"{survey.missing}; tracked with {chosen}, as {DEFAULT_TRACKER} needs it"])
+        findings.note([f"{survey.missing}. Tracked with {chosen}: {DEFAULT_TRACKER} needs it"])
     elif survey.missing:
         findings.note([survey.missing])
     made = _suited(chosen, files)
