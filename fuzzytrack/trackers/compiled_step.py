@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import BLOCK, aligned
 from fuzzytrack.lanes.runner import Runner
-from fuzzytrack.trackers.state import TrackState, check_rows
+from fuzzytrack.trackers.origin import Origin
+from fuzzytrack.trackers.state import TrackState, check_origin
 
 __all__ = ["CompiledStep"]
 
@@ -32,14 +33,16 @@ class CompiledStep:
         Compiled, see `fuzzytrack.lanes.runner.Runner.compile`.
     needs_sigma : bool
         Whether plots need a standard deviation.
+    origin : Origin
+        The tracker.
     """
 
-    def __init__(self, core: Runner, needs_sigma: bool) -> None:
+    def __init__(self, core: Runner, needs_sigma: bool, origin: Origin) -> None:
         # Compiled code is called by its address, so it must be kept.
         self._core = core
         self._common_step: Any = core.common_step
         self._own_step: Any = core.own_step
-        self._rows, self._needs_sigma = core.rows, needs_sigma
+        self._rows, self._needs_sigma, self._origin = core.rows, needs_sigma, origin
         # Shapes of the plots and of the lanes of the last state.
         self._sizes: tuple[tuple[int, ...] | None, tuple[int, ...]] = (None, ())
         # Taken out while in use, so that threads do not share one.
@@ -65,7 +68,7 @@ class CompiledStep:
             z.dtype != _FLOAT
             or z.shape != shape
             or not z.flags.c_contiguous
-            or (state.rows is not rows and state.rows != rows)
+            or (state.made_by is not self._origin and not self._continues(state))
         ):
             return None
         when: Any
@@ -86,7 +89,7 @@ class CompiledStep:
         # The states of a stream share their shape; reading that of an array takes longer.
         sizes = self._sizes
         if sizes[0] is not shape or len(lanes) != rows.kept:
-            check_rows(state, rows, "this tracker")
+            check_origin(state, rows, self._origin)
             sizes = self._sizes = (shape, lanes.shape)
         after = np.empty(sizes[1])
         plots = z if len(shape) == 1 else z.reshape(-1)
@@ -94,7 +97,11 @@ class CompiledStep:
         self._room.append(room)
         if bad:
             return None
-        return TrackState.unchecked(t, shape, after, rows)
+        return TrackState.unchecked(t, shape, after, rows, self._origin)
+
+    def _continues(self, state: TrackState) -> bool:
+        """Whether a state of another tracker object can be continued."""
+        return state.rows == self._rows and self._origin.is_same(getattr(state, "made_by", None))
 
 
 def _of_each(

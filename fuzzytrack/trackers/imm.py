@@ -23,7 +23,7 @@ from fuzzytrack.trackers.imm_step import (
     switched,
 )
 from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
-from fuzzytrack.trackers.state import TrackState, check_rows
+from fuzzytrack.trackers.state import TrackState, check_origin
 
 __all__ = ["MANEUVERS", "InteractingPair"]
 
@@ -265,7 +265,7 @@ class InteractingPair(LaneTracker):
 
     def _check(self, state: TrackState) -> None:
         n_axes = state.rows.n_axes if self.joint else 1
-        check_rows(state, imm_rows(n_axes), self.name)
+        check_origin(state, imm_rows(n_axes), self._origin)
 
 
 def _probability(name: str, value: float) -> Array:

@@ -14,7 +14,7 @@ from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
 from fuzzytrack.trackers.markov_chain import MarkovChain, Rates
 from fuzzytrack.trackers.model_mixing import predicted_variance
 from fuzzytrack.trackers.model_set import UNITS, ModelRows, ModelSet, MotionModel
-from fuzzytrack.trackers.state import TrackState, check_rows
+from fuzzytrack.trackers.state import TrackState, check_origin
 
 __all__ = ["InteractingModels", "MotionModel"]
 
@@ -183,7 +183,7 @@ class InteractingModels(LaneTracker):
         """
         n = len(self.models)
         places = ModelRows(state.rows.n_axes, n)
-        check_rows(state, places.rows, self.name)
+        check_origin(state, places.rows, self._origin)
         found: Array = state.lanes[places.probability : places.probability + n].T
         return found.reshape((*state.shape[:-1], n)).copy()
 

@@ -31,11 +31,12 @@ from fuzzytrack.lanes.start import CORRECT_RETURNS, CORRECT_TAKES, single_axis_s
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.trackers.compiled_step import CompiledStep
 from fuzzytrack.trackers.filtered_variance import filtered_variance
+from fuzzytrack.trackers.origin import Origin
 from fuzzytrack.trackers.output_arrays import Out, OutputArrays
 from fuzzytrack.trackers.prediction import Prediction
 from fuzzytrack.trackers.result import ON_REQUEST, TrackResult, checked_keep
 from fuzzytrack.trackers.runners import runner
-from fuzzytrack.trackers.state import TrackState, check_rows
+from fuzzytrack.trackers.state import TrackState, check_origin
 from fuzzytrack.trackers.time_check import WRONG_GAINS, TrackTimes
 
 __all__ = ["MISSED", "LaneTracker", "check_missed"]
@@ -192,7 +193,7 @@ class LaneTracker(ABC):
         plots, times = as_plots(z, dtype), as_times(t, before)
         layout = PlotLayout.of(plots.shape, self.coupled)
         core = runner(self, layout.lane_axes)
-        _check_state(state, plots, core.rows, self.name)
+        self._check_state(state, plots, core.rows)
         steps = time_steps(times, plots.shape, before)
         deviation = self._sigmas(sigma, plots)
         if plots.dtype == np.float32:
@@ -217,7 +218,8 @@ class LaneTracker(ABC):
             raise
         last = state
         if len(plots):
-            last = TrackState(times[-1].copy(), plots.shape[1:], after, core.rows)
+            shape = plots.shape[1:]
+            last = TrackState(times[-1].copy(), shape, after, core.rows, self._origin)
         memories = raw.pop(MEMORY, None)
         results = arrays.results(raw, layout)
         if memories is not None:
@@ -375,7 +377,13 @@ class LaneTracker(ABC):
         runner(self, n_axes if self.coupled else 1).compile()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_compiled_steps"}
+        made = ("_compiled_steps", "_origin")
+        return {name: value for name, value in self.__dict__.items() if name not in made}
+
+    @cached_property
+    def _origin(self) -> Origin:
+        """What the states of this tracker say of it."""
+        return Origin(self)
 
     @cached_property
     def _compiled_steps(self) -> dict[int, CompiledStep]:
@@ -388,7 +396,7 @@ class LaneTracker(ABC):
         core = runner(self, n_axes)
         if core.own_step is None or core.rows != state.rows:
             return None
-        step = self._compiled_steps[n_axes] = CompiledStep(core, self.needs_sigma)
+        step = self._compiled_steps[n_axes] = CompiledStep(core, self.needs_sigma, self._origin)
         return step
 
     def _one_step(
@@ -401,7 +409,7 @@ class LaneTracker(ABC):
         if np.isinf(plots).any():
             raise infinite_plot(plots)
         core = runner(self, layout.lane_axes)
-        _check_state(state, plots, core.rows, self.name)
+        self._check_state(state, plots, core.rows)
         time_steps(times, plots.shape, before)
         lane_times = layout.times_to_lanes(times)
         deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
@@ -421,7 +429,18 @@ class LaneTracker(ABC):
         except Exception as error:
             self._explain(error, layout.lane_axes)
             raise
-        return TrackState(times[0].copy(), plots.shape[1:], after, core.rows)
+        return TrackState(times[0].copy(), plots.shape[1:], after, core.rows, self._origin)
+
+    def _check_state(self, state: TrackState | None, plots: Array, rows: Rows) -> None:
+        """Raise ValueError for a state of other tracks, or of another tracker."""
+        if state is None:
+            return
+        if state.shape != plots.shape[1:]:
+            raise ValueError(
+                f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape "
+                f"{state.shape}"
+            )
+        check_origin(state, rows, self._origin)
 
     def _explain(self, error: Exception, n_axes: int) -> None:
         """Name the tracker in an error of its step; PluginError if its functions lack the form."""
@@ -483,13 +502,3 @@ def _time_of(state: TrackState | None) -> Array | np.float64 | None:
 def _check_threads(threads: int | None) -> None:
     if threads is not None and operator.index(threads) < 1:
         raise ValueError(f"threads must be at least 1, got {threads}")
-
-
-def _check_state(state: TrackState | None, plots: Array, rows: Rows, name: str) -> None:
-    if state is None:
-        return
-    if state.shape != plots.shape[1:]:
-        raise ValueError(
-            f"z: plots of shape {plots.shape[1:]} do not go on from a state of shape {state.shape}"
-        )
-    check_rows(state, rows, name)

@@ -11,8 +11,9 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.plots import gains_as_plots
 from fuzzytrack.reprs import summary
+from fuzzytrack.trackers.origin import Origin
 
-__all__ = ["Gains", "TrackState", "check_rows"]
+__all__ = ["Gains", "TrackState", "check_origin"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +49,8 @@ class TrackState:
         All numbers, laid out as `rows` says.
     rows : Rows
         The layout.
+    made_by : Origin or None
+        The tracker that it comes from. Only a tracker with the same parameters continues it.
 
     Raises
     ------
@@ -59,6 +62,7 @@ class TrackState:
     shape: tuple[int, ...]
     lanes: Array
     rows: Rows
+    made_by: Origin | None = None
 
     def __repr__(self) -> str:
         return summary(self, "time", "shape")
@@ -73,7 +77,12 @@ class TrackState:
 
     @classmethod
     def unchecked(
-        cls, time: Array | np.float64, shape: tuple[int, ...], lanes: Array, rows: Rows
+        cls,
+        time: Array | np.float64,
+        shape: tuple[int, ...],
+        lanes: Array,
+        rows: Rows,
+        made_by: Origin,
     ) -> TrackState:
         """State of values that are known to be consistent; for a stream of plots.
 
@@ -83,7 +92,7 @@ class TrackState:
 
         Parameters
         ----------
-        time, shape, lanes, rows
+        time, shape, lanes, rows, made_by
             As for the class; `lanes` is contiguous.
         """
         state = object.__new__(cls)
@@ -91,6 +100,7 @@ class TrackState:
         _set_shape(state, shape)
         _set_lanes(state, lanes)
         _set_rows(state, rows)
+        _set_made_by(state, made_by)
         return state
 
     def _read(self, row: int, count: int) -> Array:
@@ -130,30 +140,38 @@ class TrackState:
         return Gains(*(gains_as_plots(part, self.shape, rows.n_axes // sets) for part in parts))
 
 
-_set_time, _set_shape, _set_lanes, _set_rows = (
-    vars(TrackState)[name].__set__ for name in ("time", "shape", "lanes", "rows")
+_set_time, _set_shape, _set_lanes, _set_rows, _set_made_by = (
+    vars(TrackState)[name].__set__ for name in ("time", "shape", "lanes", "rows", "made_by")
 )
 
 
-def check_rows(state: TrackState, rows: Rows, name: str) -> None:
-    """Raise ValueError for a state whose lanes have another layout than those of a tracker.
+def check_origin(state: TrackState, rows: Rows, origin: Origin) -> None:
+    """Raise ValueError for a state that comes from a tracker with other parameters.
 
     Parameters
     ----------
     state : TrackState
     rows : Rows
         Layout of the tracker's lanes.
-    name : str
-        Name of the tracker.
+    origin : Origin
+        The tracker.
 
     Raises
     ------
     ValueError
-        If the layouts differ.
+        If the layouts or the parameters differ; names both trackers.
     """
-    # A state that another release pickled may have fewer rows.
-    if state.rows != rows or len(state.lanes) != rows.kept:
+    # A state that another release pickled has no such attribute.
+    made_by = getattr(state, "made_by", None)
+    if made_by is not None and not made_by.is_same(origin):
+        alike = " of the same name, with other parameters" if made_by.text == origin.text else ""
         raise ValueError(
-            f"state: its lanes are laid out for another tracker than {name} with these settings; "
-            "give a state that the same tracker returned"
+            f"state: it comes from {made_by.text}, and cannot be continued by {origin.text}{alike};"
+            " give a state that this tracker returned"
+        )
+    # A state that another release pickled may have fewer rows.
+    if made_by is None or state.rows != rows or len(state.lanes) != rows.kept:
+        raise ValueError(
+            f"state: its lanes are laid out for another tracker than {origin.text}, or by another "
+            "release of fuzzytrack; give a state that this tracker returned"
         )

@@ -13,8 +13,9 @@ from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_tracker
+from fuzzytrack.trackers.origin import Origin
 from fuzzytrack.trackers.prediction import Prediction
-from fuzzytrack.trackers.state import TrackState, check_rows
+from fuzzytrack.trackers.state import TrackState, check_origin
 
 __all__ = ["TrackStore"]
 
@@ -72,7 +73,7 @@ class TrackStore:
         self.tracker, self.n_axes = tracker, n_axes
         # Without a plot, so the standard deviation is of no meaning.
         nobody = tracker.start(np.empty((0, n_axes)), 0.0, 1.0)
-        self._rows = nobody.rows
+        self._rows, self._origin = nobody.rows, nobody.made_by or Origin(tracker)
         # One row for each track, since its numbers are used together. A cell is a number of all
         # lanes of the track, which are copied together.
         self._cell = np.dtype((np.void, 8 * (n_axes // nobody.rows.n_axes)))
@@ -258,7 +259,9 @@ class TrackStore:
 
     def _state(self, slots: Slots) -> TrackState:
         lanes = np.ascontiguousarray(self._numbers[slots].T).view(np.float64)
-        return TrackState(self._time[slots], (len(slots), self.n_axes), lanes, self._rows)
+        return TrackState(
+            self._time[slots], (len(slots), self.n_axes), lanes, self._rows, self._origin
+        )
 
     def _put(self, slots: Slots, state: TrackState) -> None:
         self._numbers[slots] = state.lanes.view(self._cell).T
@@ -303,4 +306,4 @@ class TrackStore:
                 f"{counted(count, 'track')} and {counted(self.n_axes, 'axis', 'axes')} has "
                 f"{(count, *alone)}"
             )
-        check_rows(state, self._rows, type(self.tracker).__name__)
+        check_origin(state, self._rows, self._origin)

@@ -377,7 +377,7 @@ def test_batches_keep_their_order():
 
 def test_states_of_others_are_refused():
     alien = InteractingPair(0.1, 1.0, sigma_w=1.0).run([0.0], [[0.0, 0.0]]).state
-    with pytest.raises(ValueError, match="state: its lanes are laid out for another tracker"):
+    with pytest.raises(ValueError, match=r"state: it comes from InteractingPair\("):
         two_model_imm().probabilities(alien)
 
 

@@ -216,7 +216,7 @@ def test_compiled_streams_check_what_they_are_given():
     for message, (z, t, sigma) in cases.items():
         with pytest.raises(ValueError, match=message):
             FIXED.step(state, z, t, sigma)
-    with pytest.raises(ValueError, match="state: its lanes are laid out for another tracker"):
+    with pytest.raises(ValueError, match=r"state: it comes from AlphaBetaTracker\(FixedGains"):
         FUZZY.step(state, [0.0, 0.0], 2.0)
     expected = FIXED.step(state, [3.0, 4.0], 2.0)
     spread_out = np.array([[3.0, 4.0], [0.0, 0.0]]).T[:, 0]
@@ -352,7 +352,9 @@ def test_a_state_with_fewer_rows_is_refused():
     """As one that another release has pickled: loading it does not run the constructor's checks."""
     FIXED.compile(2)
     state = FIXED.step(FIXED.start([0.0, 0.0], 0.0), [1.0, 1.0], 1.0)
-    old = ft.TrackState.unchecked(state.time, (2,), state.lanes[:-1].copy(), state.rows)
+    old = ft.TrackState.unchecked(
+        state.time, (2,), state.lanes[:-1].copy(), state.rows, state.made_by
+    )
     with pytest.raises(ValueError, match="laid out for another tracker"):
         FIXED.step(old, [2.0, 2.0], 2.0)
     with pytest.raises(ValueError, match="laid out for another tracker"):

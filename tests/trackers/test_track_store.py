@@ -225,7 +225,7 @@ def test_states_that_do_not_fit():
             ValueError, match=rf"state: shape {shape} does not fit; a state of 1 track and 2 axes"
         ):
             store.add(FIXED.start(z, 0.0))
-    with pytest.raises(ValueError, match="laid out for another tracker than AlphaBetaTracker"):
+    with pytest.raises(ValueError, match=r"state: it comes from AlphaBetaTracker\(KalmanCV"):
         store.add(TRACKERS["kalman-cv:sigma_v=1"].start([[1.0, 2.0]], 0.0, 1.0))
     slots = started(store, [[1.0, 2.0], [3.0, 4.0]])
     with pytest.raises(ValueError, match="a state of 2 tracks and 2 axes has"):
