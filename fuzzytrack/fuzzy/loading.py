@@ -15,6 +15,8 @@ __all__ = ["as_rulebase", "load_rulebase", "loads_rulebase", "rulebase_path", "s
 
 SCHEMA_FILE = "rulebase.schema.json"
 
+_OTHERS = {".fis": "MATLAB's Fuzzy Logic Toolbox", ".fll": "fuzzylite", ".fcl": "IEC 61131-7"}
+
 _SHIPPED = Shipped("rule base", "rulebases", SCHEMA_FILE, RuleBaseError)
 
 
@@ -66,8 +68,20 @@ def load_rulebase(name_or_path: str | os.PathLike[str]) -> RuleBase:
     RuleBaseError
         If there is no such name, or the file cannot be read, or is no rule base.
     """
+    _refuse_others(name_or_path)
     rules = Reader(_SHIPPED.document(name_or_path)).rulebase()
     return remember_origin(rules, _SHIPPED.spelled(name_or_path))
+
+
+def _refuse_others(name_or_path: str | os.PathLike[str]) -> None:
+    """Raise RuleBaseError for the files of other programs."""
+    text = os.fspath(name_or_path) if isinstance(name_or_path, str | os.PathLike) else ""
+    program = _OTHERS.get(Path(str(text)).suffix.lower())
+    if program is not None:
+        raise RuleBaseError(
+            f"{text}: a file of {program}, which is not read; write its sets and rules as a rule "
+            "base in a file that ends in .yaml"
+        )
 
 
 def as_rulebase(rules: RuleBase | str | os.PathLike[str], name: str = "rules") -> RuleBase:

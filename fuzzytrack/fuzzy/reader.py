@@ -9,7 +9,7 @@ import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from fuzzytrack.errors import Word
+from fuzzytrack.errors import Location, Word
 from fuzzytrack.fuzzy.cells import CellReader
 from fuzzytrack.fuzzy.membership import SHAPES, TAILED, FuzzySet
 from fuzzytrack.fuzzy.rulebase import (
@@ -20,6 +20,7 @@ from fuzzytrack.fuzzy.rulebase import (
     Rule,
     RuleBase,
     TableLayout,
+    remember_places,
 )
 from fuzzytrack.fuzzy.variable import GRIDS, Universe, Variable
 from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted
@@ -64,6 +65,7 @@ class Reader:
         self.inputs: dict[str, Variable] = {}
         self.outputs: dict[str, Variable] = {}
         self.rule_nodes: dict[frozenset[tuple[str, str]], tuple[Node, bool]] = {}
+        self.places: dict[str, Location] = {}
         self.cells = CellReader(document, {})
 
     def rulebase(self) -> RuleBase:
@@ -100,7 +102,7 @@ class Reader:
                 layout=layout,
             )
         self._check_coverage(rulebase, top["inputs"])
-        return rulebase
+        return remember_places(rulebase, self.places)
 
     def _check_version(self) -> None:
         entries = self.document.entries(self.document.root, "the rule base")
@@ -165,6 +167,7 @@ class Reader:
         optional = ("label", "unit") if role == "input" else ("label", "unit", "default")
         fields = document.fields(node, f"{role} {name}", ("universe", "sets"), optional)
         universe = self._universe(fields["universe"])
+        self.places[name] = document.location(fields["universe"])
         sets = self._sets(fields["sets"], name, universe)
         with document.at(fields["sets"]):
             variable = Variable(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.reprs import shown
 
@@ -167,6 +167,8 @@ class RuleBase:
     # What `load_rulebase` was given. No field: a changed copy does not come from there, and equal
     # rule bases are equal wherever they come from.
     _origin: ClassVar[str | None] = None
+    # Where the universes stand in the text that it was read from, by the name of a variable.
+    _places: ClassVar[Mapping[str, Location]] = {}
 
     def __post_init__(self) -> None:
         for name in ("inputs", "outputs", "rules", "scheduler"):
@@ -277,6 +279,13 @@ class RuleBase:
         """Output by name; RuleBaseError names the allowed ones."""
         return _named(self.outputs, name, "output")
 
+    def place(self, name: str) -> Location | None:
+        """Where the universe of a variable stands in the file that the rule base was read from.
+
+        None for a rule base, or a changed copy, that comes from no file.
+        """
+        return self._places.get(name)
+
     def uncovered(self, name: str) -> Iterator[tuple[float, float]]:
         """Intervals of an input, as (low, high), where every membership is zero."""
         return self.input(name).uncovered()
@@ -285,6 +294,12 @@ class RuleBase:
 def remember_origin(rules: RuleBase, name_or_path: str) -> RuleBase:
     """The same rule base, with the name or path by which it was loaded in its `repr`."""
     object.__setattr__(rules, "_origin", name_or_path)
+    return rules
+
+
+def remember_places(rules: RuleBase, places: Mapping[str, Location]) -> RuleBase:
+    """The same rule base, with the places of its universes, for messages."""
+    object.__setattr__(rules, "_places", dict(places))
     return rules
 
 

@@ -147,7 +147,7 @@ class FuzzySystem:
         Parameters
         ----------
         **inputs : array_like
-            One value for each input, by name; they broadcast.
+            One value for each input, by name; they broadcast. What is masked is NaN.
 
         Returns
         -------
@@ -200,7 +200,7 @@ class FuzzySystem:
         if set(inputs) != set(names):
             got = ", ".join(inputs) or "none"
             raise TypeError(f"inputs: expected {', '.join(names)}; got {got}")
-        arrays = np.broadcast_arrays(*(np.asarray(inputs[n], dtype=np.float64) for n in names))
+        arrays = np.broadcast_arrays(*(_numbers(inputs[n]) for n in names))
         return np.stack([a.ravel() for a in arrays], axis=1), arrays[0].shape
 
     def _warn_where_empty(self, points: Array, values: dict[str, Array]) -> None:
@@ -422,6 +422,13 @@ class FuzzySystem:
         grid = dict(zip(names, np.meshgrid(*axes, indexing="ij"), strict=True))
         values = self(**grid, **fixed)[output]
         return Surface(names[0], names[1], output, axes[0], axes[1], np.asarray(values))
+
+
+def _numbers(values: ArrayLike) -> Array:
+    """Values of an input; NaN where they are masked."""
+    if np.ma.is_masked(values):
+        return np.asarray(np.ma.filled(np.ma.asarray(values).astype(np.float64), np.nan))
+    return np.asarray(values, dtype=np.float64)
 
 
 def _place(names: tuple[str, ...], point: Array) -> str:

@@ -7,7 +7,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 
-__all__ = ["finite", "inside", "nonnegative", "number", "positive", "stable_gains", "within"]
+__all__ = [
+    "SQUARES", "finite", "inside", "nonnegative", "nonnegative_deviation", "number", "positive",
+    "positive_deviation", "stable_gains", "within",
+]  # fmt: skip
+
+#: Limits between which the square of a standard deviation is a number to calculate with.
+SQUARES = (1e-150, 1e150)
 
 
 def finite(name: str, value: ArrayLike) -> Array:
@@ -26,6 +32,25 @@ def positive(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite and > 0, or a ValueError that names it."""
     array = np.asarray(value, dtype=np.float64)
     return _all(name, array, np.isfinite(array) & (array > 0), "finite and > 0")
+
+
+def positive_deviation(name: str, value: ArrayLike) -> Array:
+    """As `positive`, for numbers that are squared: from 1e-150 to 1e150."""
+    array = positive(name, value)
+    return _all(name, array, _squarable(array), _SQUARABLE)
+
+
+def nonnegative_deviation(name: str, value: ArrayLike) -> Array:
+    """As `nonnegative`, for numbers that are squared: 0, or from 1e-150 to 1e150."""
+    array = nonnegative(name, value)
+    return _all(name, array, (array == 0) | _squarable(array), f"0 or {_SQUARABLE}")
+
+
+_SQUARABLE = f"from {SQUARES[0]:g} to {SQUARES[1]:g}, since it is squared"
+
+
+def _squarable(array: Array) -> NDArray[np.bool_]:
+    return np.asarray((array >= SQUARES[0]) & (array <= SQUARES[1]))
 
 
 def within(name: str, value: ArrayLike, good: NDArray[np.bool_], range_: str) -> Array:

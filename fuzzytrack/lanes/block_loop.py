@@ -53,6 +53,15 @@ def _infinite(numbers: Any, start: int, count: int) -> int:
     return found
 
 
+def _lost(b: Any, row: int, plots_row: int, count: int) -> int:
+    """How many lanes that have a plot have no finite number in a row."""
+    some, plots = b[row * BLOCK : row * BLOCK + count], b[plots_row * BLOCK :]
+    found = 0
+    for i in range(count):
+        found += (some[i] - some[i] != 0.0) & (plots[i] > 0.0)
+    return found
+
+
 def _find_missed(plots: Any, start: int, n_axes: int, count: int, missed: Any) -> int:
     """Write the lanes without a whole plot into `missed`, and return how many there are."""
     found = 0
@@ -277,7 +286,7 @@ def _one_step(fill: Callable[..., None]) -> Callable[..., int]:
     """Function that takes all lanes one step on, with times and sigmas that `fill` fills in.
 
     It is `_run` cut down to what tracks that come plot by plot need. It returns how many plots are
-    infinite; `new` is of no use then.
+    infinite, or positions and velocities of tracks no numbers; `new` is of no use then.
     """
 
     def one_step(
@@ -285,10 +294,10 @@ def _one_step(fill: Callable[..., None]) -> Callable[..., int]:
         sigma: Any, new: Any,
     ) -> int:  # fmt: skip
         (
-            n_axes, _, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row, _,
-            _,
+            n_axes, _, state, end, shown, now, last_time, restored, plot_row, sigma_row, dt_row,
+            plots_row, _,
         ) = places  # fmt: skip
-        lanes = old.shape[1]
+        lanes, lost = old.shape[1], 0
         before, after = old.reshape(-1), new.reshape(-1)
         for begin in range(0, lanes, BLOCK):
             count = min(BLOCK, lanes - begin)
@@ -300,6 +309,8 @@ def _one_step(fill: Callable[..., None]) -> Callable[..., int]:
             fill(b, sigma_row, n_axes, t, sigma, times, lanes, begin, count)
             _elapsed(b, dt_row, times, 0, 1, since, count)
             call(step, (pointer(b, 0), count))
+            for r in range(3 * n_axes):
+                lost += _lost(b, shown + r, plots_row, count)
             for r in range(end):
                 _copy_out(b, r, after, r * lanes + begin, 1, count)
             for r in range(3 * n_axes):
@@ -310,7 +321,7 @@ def _one_step(fill: Callable[..., None]) -> Callable[..., int]:
                     for r in range(restored):
                         after[r * lanes + i] = before[r * lanes + i]
                     after[last_time * lanes + i] = before[last_time * lanes + i]
-        return _infinite(plots, 0, lanes * n_axes)
+        return lost + _infinite(plots, 0, lanes * n_axes)
 
     return one_step
 

@@ -14,11 +14,17 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
+from fuzzytrack.gains.checks import SQUARES
 
 __all__ = [
-    "PlotLayout", "as_plots", "as_times", "check_single_precision", "gains_as_plots",
+    "SIGMAS", "PlotLayout", "as_plots", "as_times", "check_single_precision", "gains_as_plots",
     "infinite_plot", "plot_sigmas", "time_steps",
+    "with_time_axis",
 ]  # fmt: skip
+
+
+#: Least and largest standard deviation of a plot: its square is a variance to calculate with.
+SIGMAS: dict[type, tuple[float, float]] = {np.float64: SQUARES, np.float32: (1e-18, 1e18)}
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,12 @@ class PlotLayout:
         full = np.broadcast_to(values, (len(values), *self.shape[1:]))
         return full.reshape(len(values), self.lanes, self.lane_axes)
 
+    def track_of(self, lane: int) -> tuple[int, ...]:
+        """Index of the track of a lane in the batch; empty for a track alone."""
+        batch = self.shape[1:-1]
+        per_track = self.lanes // math.prod(batch)
+        return tuple(int(k) for k in np.unravel_index(lane // per_track, batch)) if batch else ()
+
     def times_to_lanes(self, times: Array) -> Array:
         """Times, common or each track's own, shape (n_steps, lanes or 1)."""
         if times.ndim == 1:
@@ -104,6 +116,12 @@ def as_plots(z: ArrayLike, dtype: DTypeLike) -> NDArray[Any]:
         return np.asarray(given, dtype=kind)
 
 
+def with_time_axis(values: ArrayLike) -> NDArray[Any]:
+    """Values of one step as those of a run of one step; masks are kept."""
+    given = values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+    return given.reshape((1, *given.shape))
+
+
 def as_times(t: ArrayLike, before: ArrayLike | None) -> Array:
     """Times (s) of the plots, each track's own if those of the state, `before`, are.
 
@@ -111,7 +129,13 @@ def as_times(t: ArrayLike, before: ArrayLike | None) -> Array:
     ------
     ValueError
         If they are not real numbers.
+    DataError
+        If a time is masked: a plot has a time, or it is left out.
     """
+    if np.ma.is_masked(t):
+        place = tuple(int(k) for k in np.argwhere(np.ma.getmaskarray(np.ma.asarray(t)))[0])
+        at = f" at index {place if len(place) > 1 else place[0]}" if place else ""
+        raise DataError(f"t: time{at} is masked; leave such rows out")
     times = np.asarray(_real("t", t), dtype=np.float64)
     own = np.shape(before) if before is not None else ()
     if times.ndim != 1 or not own:
@@ -180,27 +204,34 @@ def plot_sigmas(sigma: ArrayLike | None, plots: Array, needed_by: str | None) ->
     Raises
     ------
     ValueError
-        If they are needed and missing, do not broadcast with the plots, or are not positive and
-        finite where there is a plot.
+        If they are needed and missing, do not broadcast with the plots, or where there is a plot
+        are masked, not positive, or so small or large that their squares are no numbers.
     """
     if sigma is None:
         if needed_by is not None:
             raise ValueError(f"sigma: {needed_by} needs the standard deviation of the plots (m)")
         return np.full((1,) * plots.ndim, np.nan)
-    values = np.asarray(sigma, dtype=np.float64)
+    hidden = np.ma.is_masked(sigma)
+    if hidden:
+        sigma = np.ma.filled(np.ma.asarray(sigma, dtype=np.float64), np.nan)
+    values = np.asarray(_real("sigma", sigma), dtype=np.float64)
     try:
         full = np.broadcast_to(values, plots.shape)
     except ValueError:
         raise ValueError(
             f"sigma: shape {values.shape} does not broadcast with the plots' {plots.shape}"
         ) from None
-    fits = np.isfinite(values) & (values > 0)
+    least, most = SIGMAS[plots.dtype.type]
+    fits = (values >= least) & (values <= most)
     if not fits.all():
         bad = ~np.broadcast_to(fits, plots.shape) & ~np.isnan(plots)
         for place in np.argwhere(bad)[:1].tolist():
+            value = full[tuple(place)]
+            squared = f", from {least:g} to {most:g} since it is squared,"
+            between = squared if 0 < value < np.inf else ""
             raise ValueError(
-                "sigma must be positive and finite where there is a plot; at index "
-                f"{tuple(place)} it is {full[tuple(place)]:g}"
+                f"sigma must be positive and finite{between} where there is a plot; at index "
+                f"{tuple(place)} it is {'masked' if hidden else f'{value:g}'}"
             )
     return values.reshape((1,) * (plots.ndim - values.ndim) + values.shape)
 

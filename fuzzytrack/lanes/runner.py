@@ -89,6 +89,13 @@ class Runner:
         lanes[rows.memory : rows.state] = np.reshape(self.program.memory, (-1, 1))
         return lanes
 
+    def lost(self, lanes: Array) -> int | None:
+        """First of the lanes that have a plot and no finite position; None if there is none."""
+        rows = self.rows
+        finite = np.isfinite(lanes[rows.now : rows.last_time]).all(axis=0)
+        lost = ~finite & (lanes[rows.plots] > 0.0)
+        return int(np.argmax(lost)) if lost.any() else None
+
     @property
     def restored(self) -> int:
         """How many rows, the first ones, are as before after a step without a plot."""

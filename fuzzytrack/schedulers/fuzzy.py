@@ -319,14 +319,17 @@ def _check_range(rules: RuleBase) -> None:
         for name in rules.output_names:
             least = rules.output(name).universe.low
             if least <= 0:
-                raise RuleBaseError(f"{name} must be > 0; its universe starts at {least:g}")
+                raise RuleBaseError(
+                    f"{name} must be > 0; its universe starts at {least:g}", rules.place(name)
+                )
         return
     if "stiffness" in rules.output_names:
         for name in rules.output_names:
             least = rules.output(name).universe.low
             if least < 0:
                 raise RuleBaseError(
-                    f"{name} must not be negative; its universe starts at {least:g}"
+                    f"{name} must not be negative; its universe starts at {least:g}",
+                    rules.place(name),
                 )
         return
     low = {v.name: v.universe.low for v in rules.outputs}
@@ -339,7 +342,8 @@ def _check_range(rules: RuleBase) -> None:
     if not stable:
         raise RuleBaseError(
             f"{rules.name}: the universes of its outputs reach unstable gains; needed are "
-            "alpha >= 0, beta >= 0, 2 alpha + beta <= 4 and 0 <= gamma <= 4 alpha beta/(2 - alpha)"
+            "alpha >= 0, beta >= 0, 2 alpha + beta <= 4 and 0 <= gamma <= 4 alpha beta/(2 - alpha)",
+            rules.place("alpha"),
         )
 
 
@@ -348,13 +352,14 @@ def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:
     # Grades add up to 1 everywhere and every combination of sets has a rule: one always fires.
     if system.method == "exact" and find_ramps(rules) is not None:
         return
+    place = rules.place(rules.input_names[0])
     # Single points, too, which no grid need meet; but a table has values at its nodes only, and a
     # relation at the points of the universes.
     if system.method == "exact":
         for output in rules.outputs:
             hole = find_hole(rules, output.name) if output.default is None else None
             if hole is not None and hole.stretches:
-                raise RuleBaseError(f"{rules.name}: {hole}; {_REMEDY}")
+                raise RuleBaseError(f"{rules.name}: {hole}; {_REMEDY}", place)
     axes = []
     for variable in rules.inputs:
         universe = variable.universe
@@ -369,4 +374,6 @@ def _never_silent(rules: RuleBase, system: FuzzySystem) -> None:
             where = ", ".join(
                 f"{n}={x:g}" for n, x in zip(rules.input_names, points[empty[0]], strict=True)
             )
-            raise RuleBaseError(f"{rules.name}: no rule about {name} fires at {where}; {_REMEDY}")
+            raise RuleBaseError(
+                f"{rules.name}: no rule about {name} fires at {where}; {_REMEDY}", place
+            )

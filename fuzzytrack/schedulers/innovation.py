@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from fuzzytrack.gains.checks import positive
+from fuzzytrack.gains.checks import positive, positive_deviation
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
 
 __all__ = ["InnovationScheduler"]
@@ -103,7 +103,7 @@ class InnovationScheduler(GainScheduler):
     floor: str = "max"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sigma_d", float(positive("sigma_d", self.sigma_d)))
+        object.__setattr__(self, "sigma_d", float(positive_deviation("sigma_d", self.sigma_d)))
         if self.q_scale is not None:
             object.__setattr__(self, "q_scale", float(positive("q_scale", self.q_scale)))
         if int(self.window) != self.window or not 1 <= self.window <= LONGEST_WINDOW:

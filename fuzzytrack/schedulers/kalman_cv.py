@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fuzzytrack.gains.checks import nonnegative, positive
+from fuzzytrack.gains.checks import nonnegative_deviation, positive_deviation
 from fuzzytrack.gains.joseph import NEW, ONE_PLOT, RUNNING, correct_cv, predict_cv
 from fuzzytrack.schedulers.base import GainScheduler, Kernel, Memory, schedulers
 
@@ -20,12 +20,12 @@ def check_parameters(
 ) -> None:
     """Turn parameters into floats: those of `names` >= 0, those of `optional` > 0 or None."""
     for name in names:
-        value = float(nonnegative(name, getattr(scheduler, name)))
+        value = float(nonnegative_deviation(name, getattr(scheduler, name)))
         object.__setattr__(scheduler, name, value)
     for name in optional:
         value = getattr(scheduler, name)
         if value is not None:
-            object.__setattr__(scheduler, name, float(positive(name, value)))
+            object.__setattr__(scheduler, name, float(positive_deviation(name, value)))
 
 
 @schedulers.register("kalman-cv")

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from fuzzytrack.gains.checks import nonnegative, positive
+from fuzzytrack.gains.checks import nonnegative, positive, positive_deviation
 from fuzzytrack.gains.joseph import Covariance3
 from fuzzytrack.gains.singer import add_onset, correct_optimally, fade, onset, predict_singer
 from fuzzytrack.kernels.language import Memory
@@ -89,7 +89,8 @@ class ManeuverCovariance(Converter):
         for name in ("gap", "start", "level", "velocity_sigma"):
             value = getattr(self, name)
             if value is not None:
-                object.__setattr__(self, name, float(positive(name, value)))
+                check = positive if name == "gap" else positive_deviation
+                object.__setattr__(self, name, float(check(name, value)))
         if self.axes not in AXES:
             raise ValueError(f"axes: unknown {self.axes!r}; one of {', '.join(AXES)}")
         if self.velocity_sigma is not None and self.level is None:

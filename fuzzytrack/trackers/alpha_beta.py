@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from fuzzytrack.gains.checks import nonnegative, number
+from fuzzytrack.gains.checks import nonnegative_deviation, number
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.reprs import constructor_code
@@ -90,7 +90,7 @@ class AlphaBetaTracker(LaneTracker):
             raise ValueError(f"start: unknown {start!r}; one of {', '.join(STARTS)}")
         check_missed(missed)
         if covariance is not None:
-            covariance = number("covariance", nonnegative("covariance", covariance))
+            covariance = number("covariance", nonnegative_deviation("covariance", covariance))
             if start != "two-point":
                 raise ValueError(
                     f"covariance: needs start 'two-point', got {start!r}: after one plot the "

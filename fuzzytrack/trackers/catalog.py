@@ -221,6 +221,8 @@ def make_tracker(spec: str) -> Tracker:
         raise ValueError(
             f"tracker {spec!r}: its plug-in made no tracker, but {specs.kind_of(tracker)}"
         )
+    if isinstance(tracker, LaneTracker):
+        tracker.remember_text(spec)
     return tracker
 
 

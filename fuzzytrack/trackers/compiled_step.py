@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.lanes.layout import BLOCK, aligned
+from fuzzytrack.lanes.plots import SIGMAS
 from fuzzytrack.lanes.runner import Runner
 from fuzzytrack.trackers.origin import Origin
 from fuzzytrack.trackers.state import TrackState, check_origin
@@ -18,6 +19,7 @@ __all__ = ["CompiledStep"]
 
 _FLOAT = np.dtype(np.float64)
 _NUMBERS = (float, int)
+_LEAST, _MOST = SIGMAS[np.float64]
 
 
 class CompiledStep:
@@ -62,7 +64,7 @@ class CompiledStep:
                 return None
             sigma, common = math.nan, True
         else:
-            common = isinstance(sigma, float) and 0.0 < sigma < math.inf
+            common = isinstance(sigma, float) and _LEAST <= sigma <= _MOST
         time, lanes, rows, shape = state.time, state.lanes, self._rows, state.shape
         if (
             z.dtype != _FLOAT
@@ -127,7 +129,7 @@ def _of_each(
         if any(n not in (1, m) for n, m in zip(sigma.shape[::-1], shape[::-1], strict=False)):
             return None
         sigmas = np.ascontiguousarray(np.broadcast_to(sigma, shape)).reshape(-1)
-        if not ((sigmas > 0.0) & (sigmas < math.inf)).all():
+        if not ((sigmas >= _LEAST) & (sigmas <= _MOST)).all():
             return None
     else:
         return None

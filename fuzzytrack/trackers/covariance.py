@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
-from fuzzytrack.gains.checks import nonnegative, number, within
+from fuzzytrack.gains.checks import nonnegative_deviation, number, within
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.lane_tracker import check_missed
 from fuzzytrack.trackers.result import TrackResult
@@ -116,7 +116,7 @@ def track_covariance(
     if plots.dtype != np.float64:
         raise ValueError(f"result: its dtype must be float64, got {plots.dtype}; run in float64")
     order = _order(result, acceleration_sigma)
-    noise = number("sigma_v", nonnegative("sigma_v", sigma_v))
+    noise = number("sigma_v", nonnegative_deviation("sigma_v", sigma_v))
     prior = _prior(velocity_sigma, acceleration_sigma, order)
     variances = _plot_variances(sigma, plots)
     seen = _seen(result)
@@ -167,7 +167,7 @@ def _prior(velocity_sigma: float | None, acceleration_sigma: float | None, order
     for place, value in (1, velocity_sigma), (2, acceleration_sigma):
         if value is not None:
             name = names[place]
-            variances[place] = number(name, nonnegative(name, value)) ** 2
+            variances[place] = number(name, nonnegative_deviation(name, value)) ** 2
     return np.diag(variances[:order])
 
 

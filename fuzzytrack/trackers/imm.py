@@ -8,11 +8,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.gains.checks import nonnegative, number, positive, within
+from fuzzytrack.gains.checks import nonnegative_deviation, number, positive_deviation, within
 from fuzzytrack.lanes.plots import PlotLayout
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.imm_step import (
+    FAR,
     MODEL,
     PROBABILITIES,
     ModelPair,
@@ -134,8 +135,8 @@ class InteractingPair(LaneTracker):
         if self.acceleration_sigma is not None and self.maneuver != "ca":
             raise ValueError("acceleration_sigma: only a model 'ca' has an acceleration to start")
         for check, names in (
-            (nonnegative, ("quiet_sigma", "acceleration_sigma")),
-            (positive, ("maneuver_sigma", "sigma_w", "velocity_sigma")),
+            (nonnegative_deviation, ("quiet_sigma", "acceleration_sigma")),
+            (positive_deviation, ("maneuver_sigma", "sigma_w", "velocity_sigma")),
             (_probability, ("quiet_stay", "maneuver_stay", "maneuver_start")),
         ):
             for name in names:
@@ -258,7 +259,8 @@ class InteractingPair(LaneTracker):
         )
         quiet_share: Any = to_quiet / np.where(quiet > 0.0, quiet, 1.0)
         maneuver_share: Any = to_maneuver / np.where(maneuver > 0.0, maneuver, 1.0)
-        mixed_one, mixed_two = mixed(one, two, quiet_share), mixed(two, one, maneuver_share)
+        mixed_one = mixed(one, two, quiet_share, _bounded)
+        mixed_two = mixed(two, one, maneuver_share, _bounded)
         one = moved(mixed_one, dt, self.quiet_sigma**2, False)
         two = moved(mixed_two, dt, self.maneuver_sigma**2, self.maneuver == "ca")
         return _variance(quiet, maneuver, one, two)
@@ -282,9 +284,15 @@ def _unpacked(memory: Array) -> tuple[Any, Any, Any, Any]:
     return quiet, maneuver, one, two
 
 
+def _bounded(apart: Any) -> Any:
+    """Differences whose squares are finite."""
+    return np.clip(apart, -FAR, FAR)
+
+
 def _variance(quiet: Any, maneuver: Any, one: Any, two: Any) -> Any:
     """Variance of the position: that of the models, and the spread between them."""
     # No variance is negative by rounding.
-    variances, apart = (np.maximum(model[3], 0.0) for model in (one, two)), two[0] - one[0]
+    variances = (np.maximum(model[3], 0.0) for model in (one, two))
+    apart = _bounded(two[0] - one[0])
     quiet_variance, maneuver_variance = variances
     return quiet * quiet_variance + maneuver * (maneuver_variance + quiet * apart**2)

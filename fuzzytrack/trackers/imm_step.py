@@ -17,7 +17,7 @@ from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.start import axis_results, begin_step, lane_end
 
 __all__ = [
-    "MODEL", "PROBABILITIES", "ModelPair", "imm_rows", "mixed", "moved", "step_function",
+    "FAR", "MODEL", "PROBABILITIES", "ModelPair", "imm_rows", "mixed", "moved", "step_function",
     "switched",
 ]  # fmt: skip
 
@@ -29,6 +29,11 @@ PROBABILITIES, MODEL = 2, 9
 
 # Bounds of the likelihood ratio: exp(±300)·1e±50 times a probability neither over- nor underflows.
 _EXPONENT, _RATIO = 300.0, 1e100
+
+# Differences of models, and innovations in a likelihood, count as no larger (m, m/s, m/s²), and
+# squares of innovations as no larger multiples of their variance: all stay finite, in single
+# precision as well, and so does a difference of two of them.
+FAR, _UNLIKELY = 1e12, 1e30
 
 
 # Intermediate results from one pass through the lanes to the next: for each model the share of the
@@ -90,16 +95,19 @@ def switched(
     )
 
 
-def mixed(own: Model, other: Model, share: float) -> Model:
-    """Mean and covariance of a mixture of two models, with the share of the other one."""
+def mixed(own: Model, other: Model, share: float, bounded: Callable[[Any], Any]) -> Model:
+    """Mean and covariance of a mixture of two models, with the share of the other one.
+
+    `bounded` limits a difference of the models, so that its square is finite.
+    """
     x, v, a, p11, p12, p13, p22, p23, p33 = own
     x2, v2, a2, q11, q12, q13, q22, q23, q33 = other
     dx, dv, da = x2 - x, v2 - v, a2 - a
+    means = x + share * dx, v + share * dv, a + share * da
+    dx, dv, da = bounded(dx), bounded(dv), bounded(da)
     spread = share * (1.0 - share)
     return (
-        x + share * dx,
-        v + share * dv,
-        a + share * da,
+        *means,
         p11 + share * (q11 - p11) + spread * dx * dx,
         p12 + share * (q12 - p12) + spread * dx * dv,
         p13 + share * (q13 - p13) + spread * dx * da,
@@ -188,6 +196,11 @@ def _started(
         0.0 if first else p23,
         acceleration if first else p33,
     )
+
+
+def _bounded(value: float) -> float:
+    value = value if value < FAR else FAR
+    return value if value > -FAR else -FAR
 
 
 def _between(low: float, value: float, high: float) -> float:
@@ -296,6 +309,7 @@ def _lane_passes(
             exponent = _between(-_EXPONENT, b[exponent_row * stride + i], _EXPONENT)
             odds = maneuver * (ratio * exponential(exponent))
             total = quiet + odds
+            total = total if total > 0.0 else 1.0
             after_quiet = _between(floor, quiet / total, 1.0 - floor)
             after_maneuver = _between(floor, odds / total, 1.0 - floor)
             b[quiet_row * stride + i] = after_quiet if update else quiet
@@ -347,8 +361,8 @@ def _axis_passes(
         for i in range(min(count, stride)):
             dt = b[dt_row * stride + i]
             one, two = read(b, quiet_at + i), read(b, maneuver_at + i)
-            mixed_one = mixed(one, two, b[quiet_share_row * stride + i])
-            mixed_two = mixed(two, one, b[maneuver_share_row * stride + i])
+            mixed_one = mixed(one, two, b[quiet_share_row * stride + i], _bounded)
+            mixed_two = mixed(two, one, b[maneuver_share_row * stride + i], _bounded)
             one = _predicted(mixed_one, dt, quiet_q, False)
             two = _predicted(mixed_two, dt, maneuver_q, accelerates)
             write(b, quiet_at + i, one)
@@ -361,8 +375,11 @@ def _axis_passes(
 
             r = plot_variance(z, b[(sigma_row + j) * stride + i])
             s_one, s_two = one[3] + r, two[3] + r
-            e_one, e_two = z - one[0], z - two[0]
-            exponent = 0.5 * (e_one * e_one / s_one - e_two * e_two / s_two)
+            e_one, e_two = _bounded(z - one[0]), _bounded(z - two[0])
+            square_one, square_two = e_one * e_one / s_one, e_two * e_two / s_two
+            square_one = square_one if square_one < _UNLIKELY else _UNLIKELY
+            square_two = square_two if square_two < _UNLIKELY else _UNLIKELY
+            exponent = 0.5 * (square_one - square_two)
             ratio = b[ratio_row * stride + i]
             b[ratio_row * stride + i] = ratio * (s_one / s_two)
             b[exponent_row * stride + i] = b[exponent_row * stride + i] + exponent

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.gains.checks import nonnegative, number, positive
+from fuzzytrack.gains.checks import nonnegative, nonnegative_deviation, number, positive_deviation
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.trackers.interacting_step import step_function
 from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
@@ -122,13 +122,14 @@ class InteractingModels(LaneTracker):
             "rates": _rates(self.rates, len(self.models)),
             "gap": _gap(self.gap),
             "start_acceleration": number(
-                "start_acceleration", nonnegative("start_acceleration", self.start_acceleration)
+                "start_acceleration",
+                nonnegative_deviation("start_acceleration", self.start_acceleration),
             ),
             "freedom": _degrees(self.freedom),
         }
         for name in ("level", "sigma_w"):
             if (value := getattr(self, name)) is not None:
-                checked[name] = number(name, positive(name, value))
+                checked[name] = number(name, positive_deviation(name, value))
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 

@@ -216,7 +216,8 @@ def _likelihood(
         return s * inverse, inverse
 
     def student(fit: float, best: float, narrow: float) -> float:
-        ratio, y = fit / best, root_power(narrow)
+        # Where the likelihood of all models underflows, none is better.
+        ratio, y = fit / best if best > 0.0 else 1.0, root_power(narrow)
         for _ in range(half_freedom):
             y = y * ratio
         return y

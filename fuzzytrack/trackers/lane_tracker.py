@@ -8,13 +8,14 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from pathlib import Path
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.errors import Location, PluginError, TrackWarning
+from fuzzytrack.errors import DataError, Location, PluginError, TrackWarning
 from fuzzytrack.lanes.layout import MEMORY, Rows
 from fuzzytrack.lanes.plots import (
     PlotLayout,
@@ -24,6 +25,7 @@ from fuzzytrack.lanes.plots import (
     infinite_plot,
     plot_sigmas,
     time_steps,
+    with_time_axis,
 )  # fmt: skip
 from fuzzytrack.lanes.program import LaneProgram
 from fuzzytrack.lanes.runner import InfinitePlotError, Runner
@@ -40,6 +42,8 @@ from fuzzytrack.trackers.state import TrackState, check_origin
 from fuzzytrack.trackers.time_check import WRONG_GAINS, TrackTimes
 
 __all__ = ["MISSED", "LaneTracker", "check_missed"]
+
+_PACKAGE = Path(__file__).parents[1]
 
 #: What `LaneTracker.missed` can be.
 MISSED = ("elapsed", "step")
@@ -82,9 +86,15 @@ class LaneTracker(ABC):
     missed: str = "elapsed"
     uses_acceleration: bool = True
     one_recursion: bool = True
+    # What a user wrote for this tracker, if it was made of a text; for messages.
+    _typed: ClassVar[str | None] = None
 
     def __repr__(self) -> str:
         return constructor_code(self)
+
+    def remember_text(self, typed: str) -> None:
+        """Note the text that the tracker was made of, so that messages name what a user wrote."""
+        object.__setattr__(self, "_typed", typed)
 
     @property
     def name(self) -> str:
@@ -153,13 +163,14 @@ class LaneTracker(ABC):
         Raises
         ------
         DataError
-            If a plot is infinite, or times are not finite and increasing; says where.
+            If a plot is infinite, or times are not finite and increasing; says where. Also if
+            positions are no longer finite, since numbers are too large or too small.
         TypeError
             If `out` holds anything but arrays.
         ValueError
             If shapes do not fit, the scheduler needs `sigma`, a name in `keep` or `out` is unknown,
             `threads` is less than 1, `dtype` is another, an array of `out` cannot be used, or the
-            tracker works with numbers that are too large or too small for it.
+            state comes from another tracker.
 
         Warns
         -----
@@ -215,13 +226,17 @@ class LaneTracker(ABC):
             raise infinite_plot(plots) from None
         except Exception as error:
             self._explain(error, layout.lane_axes)
+            if _is_arithmetic(error):
+                raise self._out_of_range() from error
             raise
+        memories = raw.pop(MEMORY, None)
+        results = arrays.results(raw, layout)
+        if (lane := core.lost(after)) is not None:
+            raise self._out_of_range(layout.track_of(lane))
         last = state
         if len(plots):
             shape = plots.shape[1:]
             last = TrackState(times[-1].copy(), shape, after, core.rows, self._origin)
-        memories = raw.pop(MEMORY, None)
-        results = arrays.results(raw, layout)
         if memories is not None:
             noise = sigmas if self.sigma_w is None else np.full((1, 1, 1), self.sigma_w)
             variance = filtered_variance(
@@ -404,7 +419,7 @@ class LaneTracker(ABC):
     ) -> TrackState:
         before = _time_of(state)
         plots = as_plots(z, np.float64)[None]
-        times = as_times(np.asarray(t)[None], before)
+        times = as_times(with_time_axis(t), before)
         layout = PlotLayout.of(plots.shape, self.coupled)
         if np.isinf(plots).any():
             raise infinite_plot(plots)
@@ -412,7 +427,7 @@ class LaneTracker(ABC):
         self._check_state(state, plots, core.rows)
         time_steps(times, plots.shape, before)
         lane_times = layout.times_to_lanes(times)
-        deviation = None if sigma is None else np.asarray(sigma, dtype=np.float64)[None]
+        deviation = None if sigma is None else with_time_axis(sigma)
         sigmas = layout.to_lanes(self._sigmas(deviation, plots))
         shape = (layout.lanes, layout.lane_axes)
         lanes = core.fresh(layout.lanes) if state is None else state.lanes
@@ -428,7 +443,11 @@ class LaneTracker(ABC):
                 )
         except Exception as error:
             self._explain(error, layout.lane_axes)
+            if _is_arithmetic(error):
+                raise self._out_of_range() from error
             raise
+        if (lane := core.lost(after)) is not None:
+            raise self._out_of_range(layout.track_of(lane))
         return TrackState(times[0].copy(), plots.shape[1:], after, core.rows, self._origin)
 
     def _check_state(self, state: TrackState | None, plots: Array, rows: Rows) -> None:
@@ -446,6 +465,15 @@ class LaneTracker(ABC):
         """Name the tracker in an error of its step; PluginError if its functions lack the form."""
         self._check_form(n_axes)
         error.add_note(f"in a step of {self.name}")
+
+    def _out_of_range(self, track: tuple[int, ...] = ()) -> DataError:
+        """Error about a track, or the only one, whose numbers have left the range of floats."""
+        which = f" {track if len(track) > 1 else track[0]}" if track else ""
+        return DataError(
+            f"z: track{which} cannot be followed with floating-point numbers: its plots, times or "
+            f"standard deviations, or the parameters of {self!r}, are too large or too small; "
+            "give plots about an origin near them, in units in which they are ordinary numbers"
+        )
 
     def _check_form(self, n_axes: int) -> None:
         """Raise PluginError if the tracker's part of `single_axis_step` lacks the form for it.
@@ -478,7 +506,18 @@ class LaneTracker(ABC):
         return np.array(by_axis.T).reshape(state.shape)
 
     def _sigmas(self, sigma: ArrayLike | None, plots: Array) -> Array:
-        return plot_sigmas(sigma, plots, self.name if self.needs_sigma else None)
+        return plot_sigmas(sigma, plots, self._typed or self.name if self.needs_sigma else None)
+
+
+def _is_arithmetic(error: Exception) -> bool:
+    """Whether compiled code of this package goes on with NaN or infinity where Python raises this.
+
+    That of a plug-in is left to its author.
+    """
+    domain = type(error) is ValueError and str(error) == "math domain error"
+    raised_in = traceback.extract_tb(error.__traceback__)[-1].filename
+    ours = raised_in == "<rule base>" or Path(raised_in).is_relative_to(_PACKAGE)
+    return ours and (domain or isinstance(error, ArithmeticError))
 
 
 def check_missed(missed: str) -> None:

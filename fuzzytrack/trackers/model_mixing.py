@@ -132,6 +132,7 @@ def predicted_variance(numbers: ModelSet, places: ModelRows, memory: Any, dt: An
     variances = np.maximum([b[row + 3 * n_axes] for row in models], 0.0)
     apart = positions - positions[0]
     apart -= (chances[:, None] * apart).sum(axis=0)
+    apart = np.clip(apart, -FAR, FAR)
     return (chances * (variances + (apart**2).mean(axis=1))).sum(axis=0)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from fuzzytrack.gains.checks import nonnegative, number
+from fuzzytrack.gains.checks import nonnegative_deviation, number
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.trackers.markov_chain import MarkovChain
@@ -38,7 +38,7 @@ class MotionModel:
     retention: float = 0.0
 
     def __post_init__(self) -> None:
-        noise = number("noise", nonnegative("noise", self.noise))
+        noise = number("noise", nonnegative_deviation("noise", self.noise))
         retention = float(self.retention)
         if not retention >= 0.0:
             raise ValueError(f"retention must be >= 0, or infinity, got {retention:g}")

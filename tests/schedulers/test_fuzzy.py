@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
+from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.variable import Universe, Variable
@@ -334,3 +335,41 @@ def test_a_period_is_refused_where_a_pole_may_be_real_and_negative(rules):
     assert ft.FuzzyScheduler("chan-style", period=4).period == 4
     with pytest.raises(ft.RuleBaseError, match="gives gamma; only alpha and beta"):
         ft.FuzzyScheduler(with_gamma(rules), period=4)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("universe: [0.25, 0.35", "universe: [-0.25, 0.35", "stiffness must not be negative"),
+        ("universe: [0.54, 0", "universe: [-0.54, 0", "damping must not be negative"),
+    ],
+)
+def test_outputs_out_of_range_are_named_with_their_place(rules, old, new, message):
+    text = dumps_rulebase(rules)
+    assert old in text
+    with pytest.raises(ft.RuleBaseError, match=message) as refused:
+        ft.FuzzyScheduler(loads_rulebase(text.replace(old, new), "mine.yaml"))
+    before = text[: text.index(old) + len("universe: ")]
+    place = refused.value.location
+    assert (place.file, place.line) == ("mine.yaml", before.count("\n") + 1)
+    assert place.column == len(before) - before.rindex("\n")
+    # What was changed since comes from no file.
+    with pytest.raises(ft.RuleBaseError) as refused:
+        ft.FuzzyScheduler(replace(loads_rulebase(text.replace(old, new)), name="other"))
+    assert refused.value.location is None
+
+
+def test_noise_that_reaches_zero_is_named_with_its_place():
+    text = dumps_rulebase(ft.load_rulebase("maneuver"))
+    low = text.index("universe: [0.09") + len("universe: [")
+    changed = text[:low] + "0" + text[low + 4 :]
+    with pytest.raises(ft.RuleBaseError, match="noise must be > 0; its universe starts at 0"):
+        ft.FuzzyScheduler(loads_rulebase(changed))
+    with pytest.raises(ft.RuleBaseError) as refused:
+        ft.FuzzyScheduler(loads_rulebase(changed, "m.yaml"))
+    assert str(refused.value).startswith(f"m.yaml:{text[:low].count(chr(10)) + 1}:")
+
+
+def test_a_missing_sigma_names_what_was_written():
+    with pytest.raises(ValueError, match="sigma: maneuver:level=3 needs the standard deviation"):
+        ft.trackers.catalog.make_tracker("maneuver:level=3").run([0, 1], [0, 1])
