@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         plot_surface,
         plot_track,
     )
+    from fuzzytrack.recordings.tracking import TrackedRecording, track
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
     from fuzzytrack.schedulers.reachable_gains import certify
     from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
@@ -52,6 +53,7 @@ __all__ = [
     "TrackResult",
     "TrackState",
     "TrackWarning",
+    "TrackedRecording",
     "Tracker",
     "__version__",
     "alpha_beta_from_w",
@@ -64,6 +66,7 @@ __all__ = [
     "plot_surface",
     "plot_track",
     "shipped_rulebases",
+    "track",
     "tune",
     "w_from_alpha_beta",
 ]
@@ -89,6 +92,7 @@ _HOMES = {
         "plot_surface",
         "plot_track",
     ),
+    "recordings.tracking": ("TrackedRecording", "track"),
     "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),
     "schedulers.reachable_gains": ("certify",),
     "trackers": ("AlphaBetaTracker", "Gains", "TrackResult", "TrackState", "Tracker"),

@@ -4,6 +4,7 @@ from fuzzytrack.io.cleaning import Cleaner, Cleaning, CleaningCounts
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import check_output, whole_file
+from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import check_table, open_table, read_table, table_writer, write_table
 from fuzzytrack.io.geo_track import GeoTrack
 from fuzzytrack.io.piece import Piece
@@ -13,6 +14,7 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Recording, Track, read_tracks, recording_files
 from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Table, Words
+from fuzzytrack.io.text_form import TextForm
 from fuzzytrack.io.times import Clock
 from fuzzytrack.io.track_formats import write_geo_tracks
 
@@ -22,6 +24,7 @@ __all__ = [
     "CleaningCounts",
     "Clock",
     "Columns",
+    "Findings",
     "GeoTrack",
     "Piece",
     "PlotDescription",
@@ -31,6 +34,7 @@ __all__ = [
     "Recording",
     "Source",
     "Table",
+    "TextForm",
     "Track",
     "Words",
     "check_output",

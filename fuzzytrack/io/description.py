@@ -92,6 +92,9 @@ class PlotDescription:
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, tuple(value))
+        for name in ("time", "sigma"):
+            if isinstance(getattr(self, name), list):
+                object.__setattr__(self, name, tuple(getattr(self, name)))
         for name, allowed in (("time_unit", TimeUnit), ("azimuth_from", Azimuth)):
             value = getattr(self, name)
             if value is not None and value not in get_args(allowed):

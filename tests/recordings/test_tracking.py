@@ -1,0 +1,158 @@
+"""Recorded plots tracked in one call."""
+
+import math
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.recordings.tracking import DEFAULT_TRACKER, DEFAULT_WITHOUT_NOISE
+from fuzzytrack.trackers.catalog import make_tracker
+
+
+@pytest.fixture
+def plots():
+    """A target that flies straight for 60 s, seen with a deviation of 3 m."""
+    rng = np.random.default_rng(5)
+    t = np.arange(60.0)
+    truth = np.stack([12 * t, 300 - 4 * t], axis=1)
+    return t, truth + rng.normal(size=truth.shape) * 3
+
+
+def as_text(t, z):
+    rows = (f"{a},{b},{c}" for a, (b, c) in zip(t.tolist(), z.tolist(), strict=True))
+    return "\n".join(["t,x,y", *rows]) + "\n"
+
+
+def test_arrays_frames_tables_and_files_give_the_same(plots, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    arrow = pytest.importorskip("pyarrow")
+    t, z = plots
+    path = tmp_path / "plots.csv"
+    path.write_text(as_text(t, z))
+    columns = {"t": t, "x": z[:, 0], "y": z[:, 1]}
+    whole = ft.track((t, z), sigma=3.0)
+    for same in (columns, pandas.DataFrame(columns), arrow.table(columns), path, str(path)):
+        other = ft.track(same, sigma=3.0)
+        np.testing.assert_array_equal(other.results[0].filtered, whole.results[0].filtered)
+    direct = make_tracker(DEFAULT_TRACKER).run(t, z, 3.0)
+    np.testing.assert_array_equal(whole.results[0].filtered, direct.filtered)
+
+
+def test_the_noise_is_estimated_unless_it_is_given(plots):
+    tracked = ft.track(plots)
+    decoder = tracked.recording.decoder
+    assert decoder.sigma == pytest.approx(3.0, rel=0.3)
+    error = decoder.noise_errors[0]
+    assert 0 < error < 1
+    assert ft.track(plots, sigma=[3.0, 4.0]).recording.decoder.sigma == (3.0, 4.0)
+    # What the axes share would be wrong for both.
+    assert "own" in repr(ft.track(plots, sigma=[3.0, 9.0]).tracker)
+
+
+def test_too_few_plots_for_an_estimate_are_tracked_without_noise(plots):
+    t, z = plots
+    tracked = ft.track((t[:5], z[:5]))
+    assert any(DEFAULT_WITHOUT_NOISE in note for note in tracked.findings.notes)
+    expected = make_tracker(DEFAULT_WITHOUT_NOISE).run(t[:5], z[:5])
+    np.testing.assert_array_equal(tracked.results[0].filtered, expected.filtered)
+    # A tracker that is named is never replaced.
+    with pytest.raises(ValueError, match="needs the standard deviation"):
+        ft.track((t[:5], z[:5]), DEFAULT_TRACKER)
+    fixed = ft.track((t[:5], z[:5]), "fixed:alpha=0.5:beta=0.2")
+    assert any("too few plots" in note for note in fixed.findings.notes)
+
+
+def test_a_table_of_all_tracks(plots):
+    pandas = pytest.importorskip("pandas")
+    t, z = plots
+    stamps = pandas.Timestamp("2024-03-01T10:00:00Z") + pandas.to_timedelta(t, unit="s")
+    frame = pandas.DataFrame({"time": stamps, "id": "a", "x": z[:, 0], "y": z[:, 1]})
+    tracked = ft.track(frame, id="id", sigma=3.0)
+    table = tracked.to_pandas()
+    assert len(table) == 60
+    assert list(table["id"].unique()) == ["a"]
+    np.testing.assert_array_equal(table["x"], z[:, 0])
+    np.testing.assert_array_equal(table["x_filtered"], tracked.results[0].filtered[:, 0])
+    assert table["speed"].iloc[-1] == pytest.approx(math.hypot(12, 4), rel=0.1)
+    assert table["course"].iloc[-1] == pytest.approx(math.degrees(math.atan2(12, -4)), abs=5)
+    assert table["x_sd"].iloc[-1] < 3
+
+
+def test_a_notebook_gets_a_table_and_a_picture(plots):
+    t, z = plots
+    ids = np.where(np.arange(60) % 2, "<b>", "a&b")
+    html = ft.track({"t": t, "id": ids, "x": z[:, 0], "y": z[:, 1]}, id="id", sigma=3)._repr_html_()
+    assert "<th>&lt;b&gt;</th>" in html
+    assert "a&amp;b" in html
+    assert "data:image/png;base64," in html
+    assert html.count("<tr>") == 3
+
+
+def test_more_tracks_than_a_notebook_lists():
+    ids = np.repeat(np.arange(14), 3)
+    tracked = ft.track(
+        {"t": np.tile([0, 1, 2], 14), "id": ids, "x": np.arange(42.0)}, id="id", sigma=1.0
+    )
+    assert "and 4 more" in tracked._repr_html_()
+    assert len(tracked) == 14
+
+
+def test_a_gap_divides_a_track(plots, tmp_path):
+    t, z = plots
+    late = np.where(t < 30, t, t + 20_000)
+    tracked = ft.track((late, z), sigma=3.0)
+    assert [track.segment for track in tracked.recording.tracks] == [0, 1]
+    assert tracked.findings.cleaning.segments == 1
+    tracked.write(tmp_path / "out.csv")
+    lines = (tmp_path / "out.csv").read_text().splitlines()
+    assert [line.rsplit(",", 1)[1] for line in (lines[0], lines[1], lines[-1])] == [
+        "segment",
+        "0",
+        "1",
+    ]
+    assert len(ft.track((late, z), sigma=3.0, max_gap=None)) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"polr": ("x", "y")}, TypeError, "no option 'polr'.*did you mean 'polar'"),
+        ({"axes": ["q"]}, ft.DataError, "plots: `axes`: no column 'q'"),
+        ({"sigma": -1.0}, ValueError, "sigma: must be > 0, got -1"),
+        ({"sigma": (1.0, 2.0, 3.0)}, ft.DataError, "sigma: 3 given for 2 axes"),
+        ({"duplicates": "some"}, ValueError, "duplicates: 'some'; expected one of"),
+    ],
+)
+def test_wrong_options(plots, options, error, message):
+    with pytest.raises(error, match=message):
+        ft.track(plots, **options)
+
+
+def test_what_is_no_recording():
+    with pytest.raises(TypeError, match="plots must be a file, a folder, a data frame"):
+        ft.track(5)
+    with pytest.raises(ft.DataError, match="column 't' has 2 rows, column 'x' has 1"):
+        ft.track({"t": [0, 1], "x": [1]})
+    with pytest.raises(ft.DataError, match=r"plots: shape must be .* got \(2, 2, 2\)"):
+        ft.track(([0, 1], np.zeros((2, 2, 2))))
+
+
+def test_masked_plots_are_missed(plots):
+    t, z = plots
+    masked = np.ma.masked_array(z, mask=np.zeros(z.shape, dtype=bool))
+    masked[10] = np.ma.masked
+    bare = z.copy()
+    bare[10] = math.nan
+    found, expected = ft.track((t, masked), sigma=3.0), ft.track((t, bare), sigma=3.0)
+    np.testing.assert_array_equal(found.results[0].filtered, expected.results[0].filtered)
+    assert found.totals.missed == 1
+
+
+def test_several_files_are_one_recording(plots, tmp_path):
+    t, z = plots
+    for name, part in (("a.csv", slice(0, 25)), ("b.csv", slice(25, None))):
+        (tmp_path / name).write_text(as_text(t[part], z[part]))
+    files = [tmp_path / "a.csv", tmp_path / "b.csv"]
+    found, expected = ft.track(files, sigma=3.0), ft.track((t, z), sigma=3.0)
+    np.testing.assert_array_equal(found.results[0].filtered, expected.results[0].filtered)
