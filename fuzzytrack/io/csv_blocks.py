@@ -267,7 +267,7 @@ class _Arrays:
                 column.take_numbers(values[start:stop], rows)
             elif column.kind == "word":
                 names, codes = values
-                column.take_words(*_used(names, codes, start, stop), rows)
+                column.take_words(*_used(names, codes, start, stop))
             else:
                 part = values.slice(start, stop - start).to_numpy().tolist()
                 column.take_cells(part, rows.tolist())

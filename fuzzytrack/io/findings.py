@@ -23,12 +23,15 @@ class Findings:
         Plots whose position cannot be, and which are missed plots, by the reason.
     cleaning : CleaningCounts
         What the rules of `Cleaning` have changed.
+    unnamed : int
+        Rows without an identity, which belong to no track and were left out.
     notes : list of str
         What was guessed, and what a user might want to know, each once and in a sentence.
     """
 
     impossible: Counter[str] = field(default_factory=Counter)
     cleaning: CleaningCounts = field(default_factory=CleaningCounts)
+    unnamed: int = 0
     notes: list[str] = field(default_factory=list)
 
     def note(self, sentences: Iterable[str]) -> None:
@@ -39,6 +42,7 @@ class Findings:
         """Add what was found in another part of the recording."""
         self.impossible.update(other.impossible)
         self.cleaning = self.cleaning + other.cleaning
+        self.unnamed += other.unnamed
         self.note(other.notes)
 
     def sentences(self) -> tuple[str, ...]:
@@ -47,9 +51,10 @@ class Findings:
             f"{counted(count, 'plot', 'plots')} with {reason}, taken as missed"
             for reason, count in self.impossible.items()
         )
-        return (*missed, *self.cleaning.sentences())
+        rows = counted(self.unnamed, "row") + " without an identity left out"
+        return (*([rows] if self.unnamed else []), *missed, *self.cleaning.sentences())
 
     def to_json_dict(self) -> dict[str, Any]:
         """The same in the types of JSON."""
-        faults = {**self.impossible, **asdict(self.cleaning)}
+        faults = {"unnamed": self.unnamed, **self.impossible, **asdict(self.cleaning)}
         return {"faults": faults, "notes": list(self.notes)}

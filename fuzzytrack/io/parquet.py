@@ -121,7 +121,7 @@ class ParquetSource:
 def _take(arrow: Any, column: Column, values: Any, rows: NDArray[np.int64]) -> None:
     """Add what pyarrow has read to a column."""
     if column.kind == "word":
-        column.take_words(*_names_and_codes(arrow, values), rows)
+        column.take_words(*_names_and_codes(arrow, values))
     elif column.kind == "time" and (times := _times(arrow, values)) is not None:
         column.take_times(times, rows)
     elif column.kind not in ("time", "text") and _is_number(arrow, values.type):

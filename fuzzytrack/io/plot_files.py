@@ -215,7 +215,10 @@ class PlotFiles:
 
             with _opened(each, self.reading) as source:
                 for table in source.tables(self.columns.kinds, rows, watch):
-                    yield self.decoder.decode(table, found.impossible)
+                    named = _named(table, self.columns)
+                    found.unnamed += len(table.rows) - len(named.rows)
+                    if len(named.rows):
+                        yield self.decoder.decode(named, found.impossible)
                 found.note(getattr(source, "notes", ()))
             before += size
 
@@ -374,11 +377,22 @@ def _check_alike(inputs: Sequence[Input], reading: Reading, types: dict[str, str
 
 def _first_table(inputs: Sequence[Input], reading: Reading, columns: Columns) -> Table:
     """First rows of the first file that has any."""
+    seen = False
     for each in inputs:
         with _opened(each, reading) as source:
             for table in source.tables(columns.kinds, ROWS):
-                return table
+                seen = True
+                named = _named(table, columns)
+                if len(named.rows):
+                    return named
+    if seen:
+        raise DataError(f"{_name(inputs[0])}: column {columns.id}: no row has an identity")
     raise no_rows(_name(inputs[0]))
+
+
+def _named(table: Table, columns: Columns) -> Table:
+    """Rows that belong to a track: those with an identity, if there is a column of it."""
+    return table.with_words(columns.id) if columns.id else table
 
 
 def _opened(each: Input, reading: Reading) -> AbstractContextManager[Source]:

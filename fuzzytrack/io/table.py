@@ -34,8 +34,8 @@ __all__ = [
     "silent",
 ]
 
-#: What a column that is read must hold: a number in every row; numbers and gaps; words; times as
-#: they are written, none missing; any text.
+#: What a column that is read must hold: a number in every row; numbers and gaps; words, of which
+#: some may be empty; times as they are written, none missing; any text.
 Kind = Literal["number", "gaps", "word", "time", "text"]
 
 #: Cells as they were read: text, or from files that have types an array of int64, float64 or
@@ -45,7 +45,7 @@ Cells = Sequence[str] | NDArray[Any]
 _EXPECTED = {
     "number": "a finite number",
     "gaps": "a finite number, or an empty cell or nan for a missed plot",
-    "word": "some text",
+    "word": "text",
     "time": "a time",
     "text": "text",
 }
@@ -140,6 +140,38 @@ class Table:
                 numbers[column.name] = column.numbers()
         return cls(file, rows, numbers, words, cells)
 
+    def with_words(self, name: str) -> Table:
+        """Rows that have a word in a column; the table itself if all have.
+
+        Parameters
+        ----------
+        name : str
+            Column of words.
+        """
+        column = self.words[name]
+        if "" not in column.names:
+            return self
+        chosen = np.flatnonzero(column.codes != column.names.index(""))
+        cells: dict[str, Cells] = {
+            name: found[chosen]
+            if isinstance(found, np.ndarray)
+            else [found[place] for place in chosen.tolist()]
+            for name, found in self.cells.items()
+        }
+        return Table(
+            self.file,
+            self.rows[chosen],
+            {name: values[chosen] for name, values in self.numbers.items()},
+            {name: _taken(each, chosen) for name, each in self.words.items()},
+            cells,
+        )
+
+
+def _taken(words: Words, places: NDArray[np.int64]) -> Words:
+    """Words of some rows, with no other names."""
+    used, codes = np.unique(words.codes[places], return_inverse=True)
+    return Words(tuple(words.names[code] for code in used.tolist()), codes.astype(np.int64))
+
 
 class Column:
     """A column that is being read, part by part, with the checks of its cells.
@@ -188,7 +220,7 @@ class Column:
         """
         if self.kind in ("word", "time", "text"):
             words = list(map(str.strip, cells))
-            if self.kind != "text" and not all(words):
+            if self.kind == "time" and not all(words):
                 raise self.error(rows[words.index("")], "")
             if self.kind == "time" and self.form.decimal == ",":
                 words = [
@@ -214,18 +246,15 @@ class Column:
         self._refuse(~np.isfinite(values), values, rows)
         self._parts.append(values)
 
-    def take_words(
-        self, names: Sequence[str], codes: NDArray[np.int64], rows: NDArray[np.int64]
-    ) -> None:
-        """Add words: the different ones, and for each row which; raises as `take_cells`.
+    def take_words(self, names: Sequence[str], codes: NDArray[np.int64]) -> None:
+        """Add words: the different ones, and for each row which.
 
         Every one of the names is used; a negative code stands for an empty cell.
         """
         words = [name.strip() for name in names]
-        # The last place is that of negative codes.
-        empty = np.array([*(not word for word in words), True])[codes]
-        if empty.any():
-            raise self.error(int(rows[int(np.argmax(empty))]), "")
+        if (codes < 0).any():
+            # The last place is that of negative codes.
+            words.append("")
         known = self._codes
         position = np.array([known.setdefault(word, len(known)) for word in words], dtype=np.int64)
         self._parts.append(position[codes])

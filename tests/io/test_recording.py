@@ -5,9 +5,12 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from data_files import XY, parquet, pieces_of, plot_files, written
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fuzzytrack import DataError
 from fuzzytrack.io import Columns, Piece, read_tracks, recording_files
+from fuzzytrack.io.findings import Findings
 
 
 def table(pieces):
@@ -22,6 +25,39 @@ def table(pieces):
 
 
 # -------------------------------------------------------------------- tracks
+
+
+MARKS = ["", " ", "a", "b", "007"]
+
+
+@given(st.lists(st.sampled_from(MARKS), min_size=1, max_size=12), st.integers(1, 5))
+def test_rows_without_an_identity_are_left_out_and_counted(tmp_path_factory, ids, rows):
+    """The same from CSV and Parquet, and in pieces of any size."""
+    folder = tmp_path_factory.mktemp("f")
+    x = np.arange(len(ids), dtype=float)
+    text = "t,id,x\n" + "".join(f"{k},{mark},{k}\n" for k, mark in enumerate(ids))
+    cells = [mark if k % 2 else mark.strip() or None for k, mark in enumerate(ids)]
+    csv = written(folder, text)
+    binary = parquet(folder / "f.parquet", pa.array(cells, pa.string()), x, x)
+    kept = [k for k, mark in enumerate(ids) if mark.strip()]
+    for path, first in ((csv, 2), (binary, 1)):
+        if not kept:
+            with pytest.raises(DataError, match="column id: no row has an identity"):
+                plot_files(path, id="id")
+            continue
+        findings = Findings()
+        pieces = list(plot_files(path, id="id").pieces(rows=rows, findings=findings))
+        assert findings.unnamed == len(ids) - len(kept)
+        assert [mark for piece in pieces for mark in piece.ids] == [ids[k] for k in kept]
+        assert all("" not in piece.ids.names for piece in pieces)
+        assert np.concatenate([piece.plots[:, 0] for piece in pieces]).tolist() == kept
+        assert np.concatenate([piece.rows for piece in pieces]).tolist() == [
+            k + first for k in kept
+        ]
+        left = len(ids) - len(kept)
+        rows_left = f"{left} row{'s' * (left != 1)} without an identity left out"
+        assert (rows_left in findings.sentences()) == (left > 0)
+        assert findings.to_json_dict()["faults"]["unnamed"] == left
 
 
 def test_guessed_columns_gaps_and_one_track(tmp_path):
@@ -141,8 +177,6 @@ def test_a_piece_has_a_row_at_least(tmp_path):
 
 BAD = {
     "infinite": ([1.0, 2.0, math.inf], ["a", "b", "c"], r"row 3, column x: 'inf'"),
-    "no id": ([1.0, 2.0, 3.0], ["a", None, "c"], r"row 2, column id: an empty cell"),
-    "blank id": ([1.0, 2.0, 3.0], ["a", "b", " "], r"row 3, column id: an empty cell"),
     "word": (["1", "2", "c"], ["a", "b", "c"], r"row 3, column x: 'c'"),
 }
 
