@@ -82,8 +82,9 @@ class Asterix(Reader):
             types = {name: "text" if name in TEXTS else "number" for name in cells}
             rows = _rows(chain((first,), plots), tuple(types))
             description = CATEGORIES[record.category].description(types, "id" in types)
-            remarks = [f"plots of category {record.category:03d} from source {cells['source']}"]
-            yield RecordSource(stream, types, description, rows, losses, remarks)
+            origin = f"of category {record.category:03d} from source {cells['source']}"
+            remarks = [f"plots {origin}"]
+            yield RecordSource(stream, types, description, rows, losses, remarks, origin)
 
     def _plots(self, stream: ByteStream, losses: Losses) -> Iterator[tuple[Record, Cells]]:
         """Records that are plots, all of the category, source and position of the first."""

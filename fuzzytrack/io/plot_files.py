@@ -108,9 +108,9 @@ class PlotFiles:
         with _opened(inputs[0], reading) as source:
             description = reading.description.over(getattr(source, "description", None))
             names, types = tuple(source.types), dict(source.types)
-            units = getattr(source, "units", {})
+            units, origin = getattr(source, "units", {}), getattr(source, "origin", "")
             columns = choose_columns(names, source.file, description, units)
-        _check_alike(inputs, reading, {name: types[name] for name in columns.kinds})
+        _check_alike(inputs, reading, {name: types[name] for name in columns.kinds}, origin)
         table = _first_table(inputs, reading, columns)
         decoder = _decoder(columns, description, table, units)
         return cls(tuple(inputs), reading, decoder, _notes(names, columns, decoder.clock))
@@ -359,13 +359,20 @@ def _notes(names: tuple[str, ...], columns: Columns, clock: Clock) -> tuple[str,
     return tuple(notes)
 
 
-def _check_alike(inputs: Sequence[Input], reading: Reading, types: dict[str, str]) -> None:
-    """Check that all files have the columns of the first one, of the same types."""
+def _check_alike(
+    inputs: Sequence[Input], reading: Reading, types: dict[str, str], origin: str
+) -> None:
+    """Check that all files have the columns of the first one, of the same types and origin."""
     first = _name(inputs[0])
     for each in inputs[1:]:
         with _opened(each, reading) as source:
-            others = source.types
+            others, whence = source.types, getattr(source, "origin", "")
         file = _name(each)
+        if whence != origin:
+            raise DataError(
+                f"{file}: holds plots {whence or 'of no known origin'}; expected plots "
+                f"{origin or 'of no known origin'}, as in {first}; read the files one by one"
+            )
         for name, kind in types.items():
             if name not in others:
                 raise DataError(f"{file}: no column {name!r}, which {first} has")

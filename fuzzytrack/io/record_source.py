@@ -15,7 +15,7 @@ from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.table import Column, Kind, Table, silent
 from fuzzytrack.tasks import Progress
 
-__all__ = ["Losses", "RecordSource", "Row", "no_plots"]
+__all__ = ["Losses", "RecordSource", "no_plots"]
 
 #: Where a record stands in its file, counted from 1, and its cells: a number, a text or None.
 Row = tuple[int, Sequence[Any]]
@@ -81,6 +81,8 @@ class RecordSource:
         Grows while the rows are read.
     remarks : sequence of str
         Further notes about the file as a whole.
+    origin : str
+        Where the plots come from, if files of other origins do not fit to them.
     """
 
     def __init__(
@@ -91,8 +93,10 @@ class RecordSource:
         rows: Iterator[Row],
         losses: Losses,
         remarks: Sequence[str] = (),
+        origin: str = "",
     ) -> None:
         self.file, self.types, self.description = stream.file, dict(types), description
+        self.origin = origin
         self._stream, self._rows, self._losses, self._remarks = stream, rows, losses, remarks
 
     @property

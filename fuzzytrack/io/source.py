@@ -16,8 +16,9 @@ class Source(Protocol):
 
     A source may also have ``description``, a `PlotDescription` of what its format says of the
     columns; ``units``, a mapping of names of columns to units that the file gives apart from the
-    names, as in a row of units; and ``notes``, a list of texts that grows while the file is read:
-    what was left out of it, and why.
+    names, as in a row of units; ``origin``, a text that says where the plots come from, if files of
+    other origins have positions or times that do not fit to them; and ``notes``, a list of texts
+    that grows while the file is read: what was left out of it, and why.
     """
 
     @property

@@ -15,6 +15,7 @@ from fuzzytrack.io.asterix import Asterix
 from fuzzytrack.io.asterix_blocks import records
 from fuzzytrack.io.byte_stream import ByteStream
 from fuzzytrack.io.formats import open_table
+from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.record_source import Losses
 
 pytest.importorskip("asterix.generated", reason="libasterix is not installed")
@@ -306,6 +307,17 @@ def test_a_latitude_beyond_the_pole_is_counted(tmp_path):
     columns, _, notes = read(written(tmp_path, data, "a.ast"))
     assert len(columns["lat"]) == 1
     assert "records with a latitude beyond 90°: 1 left out" in notes[1]
+
+
+def test_files_of_two_radars_are_not_read_as_one(tmp_path):
+    files = [
+        str(written(tmp_path, block(48, plot_048(source=source)), name))
+        for source, name in (((1, 2), "a.ast"), ((1, 2), "b.ast"), ((1, 3), "c.ast"))
+    ]
+    assert PlotFiles.of(files[:2]).columns.read == ("range", "azimuth")
+    message = r"c\.ast: holds plots .* source 1/3; expected .* 1/2, as in .*a\.ast"
+    with pytest.raises(DataError, match=message):
+        PlotFiles.of(files)
 
 
 # -------------------------------------------------------------------- broken bytes
