@@ -70,9 +70,8 @@ class Mot(Reader):
             width, identified = len(first), first[1] != -1.0
             numbers = (*_CELLS, *_MORE)[:width]
             types = dict.fromkeys((*numbers, "time", "x", "y"), "number") | {"id": "text"}
-            description = PlotDescription(
-                time="time", id="id" if identified else None, axes=("x", "y"), wrap=None
-            )
+            # Where it is -1 too: errors about equal times then say so.
+            description = PlotDescription(time="time", id="id", axes=("x", "y"), wrap=None)
             remarks = ["the position is the center of the box (pixels)"]
             if self.rate == 1.0:
                 remarks.append("times are numbers of frames")

@@ -7,6 +7,7 @@ from fuzzytrack.io.csv import CsvSource
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.mot import Mot
 from fuzzytrack.io.readers import reader_of
+from fuzzytrack.io.recording import read_tracks
 
 DETECTIONS = "1,-1,800,240,60,130,0.99,-1,-1,-1\n\n2,-1,816.25,241.5,60,130,0.5,-1,-1,-1\n"
 TRUTH = "1,7,10,20,4,6,1,1,0.5\n1,8,90,10,5,5,1,1,1\n2,7,12,20,4,6,1,1,1\n"
@@ -18,7 +19,7 @@ def test_the_position_is_the_center_of_the_box(tmp_path):
     assert columns["y"] == [305.0, 306.5]
     assert columns["time"] == columns["frame"] == [1.0, 2.0]
     assert columns["confidence"] == [0.99, 0.5]
-    assert (description.time, description.id, description.axes) == ("time", None, ("x", "y"))
+    assert (description.time, description.id, description.axes) == ("time", "id", ("x", "y"))
     assert "id is -1: no identities; all boxes are taken as one track" in notes
 
 
@@ -27,6 +28,12 @@ def test_identities_are_whole_numbers(tmp_path):
     assert columns["id"] == ["7", "8", "7"]
     assert description.id == "id"
     assert not [note for note in notes if "-1" in note]
+
+
+def test_boxes_without_identities_at_one_time_are_an_error_that_shows_it(tmp_path):
+    text = DETECTIONS.replace("\n\n2,", "\n1,")
+    with pytest.raises(DataError, match=r"det\.txt: row 2, .*\(id '-1'\) repeats that of row 1"):
+        read_tracks(written(tmp_path, text, "det.txt"))
 
 
 def test_a_rate_makes_seconds(tmp_path):
