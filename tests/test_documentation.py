@@ -105,7 +105,7 @@ def test_commands_on_the_page_of_real_data_run(tmp_path, monkeypatch):
     for name, text in shown_files(page):
         (tmp_path / name).write_text(text)
     commands = list(shown_commands(page))
-    assert len(commands) >= 8
+    assert len(commands) >= 10
     runner = CliRunner()
     for words, expected in commands:
         program, *arguments = shlex.split(words)
