@@ -141,7 +141,12 @@ class _Rows:
         """Rows of data, all of one width; those before an error, and that error."""
         width = len(self._names)
         failure = None
-        if set(map(len, cells)) != {width}:
+        widths = set(map(len, cells))
+        if 0 in widths:
+            # Empty lines, of which there may be very many, are none that anybody has written.
+            kept = [k for k, row in enumerate(cells) if row]
+            rows, cells = [rows[k] for k in kept], [cells[k] for k in kept]
+        if not widths <= {0, width}:
             rows, cells, failure = self._of_one_width(rows, cells)
         firsts = [row[self._first] for row in cells]
         plain = list(map(str.strip, firsts))
@@ -160,9 +165,7 @@ class _Rows:
             size = len(row)
             if size != width:
                 if not any(map(str.strip, row)):
-                    # An empty line is none that anybody has written.
-                    if row:
-                        self._count("blank row")
+                    self._count("blank row")
                     continue
                 if size < self._least or any(map(str.strip, row[width:])):
                     failure = self._width_error(rows[k], row)

@@ -230,7 +230,7 @@ def _rows(lines: Sequence[str], form: TextForm) -> list[tuple[list[str], int]]:
     found: list[tuple[list[str], int]] = []
     try:
         for row in reader:
-            if any(map(str.strip, row)):
+            if row and any(map(str.strip, row)):
                 found.append((row, reader.line_num))
             if len(found) > _ROWS:
                 break
