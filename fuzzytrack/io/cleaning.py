@@ -383,7 +383,8 @@ class Cleaner:
 
     def _remedies(self, fall: float, track: Array, identified: bool) -> str:
         intervals = track[cleaning_step.INTERVALS]
-        mean = track[cleaning_step.SUM] / intervals if intervals else 0.0
+        # As Python's number, which is infinite without a warning.
+        mean = float(track[cleaning_step.SUM] / intervals) if intervals else 0.0
         remedies = "; `sort` puts them in order"
         if not identified:
             remedies += ", and `id` names the column that distinguishes tracks"

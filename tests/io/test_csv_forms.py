@@ -255,6 +255,21 @@ def test_a_table_in_any_form_is_read_as_it_was(tmp_path_factory, table, form):
     np.testing.assert_array_equal(found[0].numbers["y"], read_back.numbers["y"])
 
 
+@given(tables, st.sampled_from([",", ";", "\t", "|"]))
+def test_a_table_without_names_is_read_with_those_given(tmp_path_factory, table, delimiter):
+    path = tmp_path_factory.getbasetemp() / "nameless.csv"
+    rows = (delimiter.join("nan" if c is None else repr(c) for c in row) for row in table)
+    path.write_text("\n".join(rows) + "\n")
+    (found,), _ = read(path, TextForm(columns=("time", "x", "y"), delimiter=delimiter))
+    expected = [[math.nan if cell is None else cell for cell in row[1:]] for row in table]
+    np.testing.assert_array_equal(
+        np.stack([found.numbers["x"], found.numbers["y"]], axis=1), expected
+    )
+    assert found.rows.tolist() == list(range(1, len(table) + 1))
+    with pytest.raises(DataError, match="row 1: holds numbers"):
+        read(path)
+
+
 # -------------------------------------------------------------------- large files
 
 ODD = (
