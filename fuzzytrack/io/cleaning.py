@@ -214,7 +214,8 @@ class Cleaner:
         known = period if cleaning.wrap == "auto" else cleaning.wrap
         self._clock = np.array([float(known or 0), math.nan])
         self._counts = np.zeros(6, dtype=np.int64)
-        self._fills = 0
+        self._fills = self._sorted_wraps = 0
+        self._period = 0.0
         self._slot: dict[str, int] = {}
         self._state = np.empty((0, 0))
         self._files: list[str] = []
@@ -225,7 +226,7 @@ class Cleaner:
     def counts(self) -> CleaningCounts:
         """What the rules have changed so far."""
         copies, stale, delayed, segments, coasted, wraps = self._counts.tolist()
-        period = float(self._clock[cleaning_step.PERIOD]) or None
+        period = float(self._clock[cleaning_step.PERIOD]) or self._period or None
         equal = self._equal
         return CleaningCounts(
             copies=copies + (equal.copies if equal else 0),
@@ -235,7 +236,7 @@ class Cleaner:
             delayed=delayed,
             segments=segments,
             coasted=coasted,
-            wraps=wraps,
+            wraps=wraps + self._sorted_wraps,
             period=period,
         )
 
@@ -263,6 +264,30 @@ class Cleaner:
         _check_finite(piece)
         piece = self._without_fills(piece)
         return self._cleaned(piece if self._equal is None else self._equal.advance(piece))
+
+    def in_order(self, piece: Piece) -> Piece:
+        """Put a recording in order of time, track by track, before it is cleaned as one piece.
+
+        A clock that starts again is recognized in the order of the file, which is nearly that of
+        time: midnight is not what is out of order.
+
+        Parameters
+        ----------
+        piece : Piece
+            The whole recording.
+        """
+        codes, time = piece.ids.codes, piece.time
+        period = float(self._clock[cleaning_step.PERIOD])
+        if period == 0 and self.cleaning.wrap == "auto":
+            period = _recognized(piece)
+        if period > 0 and len(piece):
+            turns = _turns_in_file(time, period)
+            time = time + turns * period
+            self._period, self._sorted_wraps = period, _turned(codes, turns)
+        # The cleaner must not turn the clock once more.
+        self._clock[cleaning_step.PERIOD] = self._rules[cleaning_step.RECOGNIZE] = 0.0
+        # Stable: the order of the file within a track.
+        return replace(piece, time=time).take(np.lexsort((time, codes)))
 
     def finish(self) -> Piece | None:
         """Take the rows that were held back at the end of the recording, if there are any."""
@@ -412,6 +437,39 @@ def _repeats(piece: Piece, place: int, before: str, identified: bool) -> str:
         f"repeats that of {before}; expected times that differ, or `duplicates` to say which plot "
         f"counts{mend}"
     )
+
+
+def _turns_in_file(time: Array, period: float) -> Array:
+    """How often a clock has started again before each row, from row to row of a file.
+
+    Times that fall by less than a quarter of the period are out of order; so are those that rise by
+    more than three quarters.
+    """
+    turns = np.zeros(len(time))
+    turns[1:] = np.cumsum(-np.floor(np.diff(time) / period + 0.25))
+    return turns
+
+
+def _recognized(piece: Piece) -> float:
+    """Period of a clock that starts again in some track; 0 if none is recognized."""
+    order = np.argsort(piece.ids.codes, kind="stable")
+    steps = np.diff(piece.time[order])[np.diff(piece.ids.codes[order]) == 0]
+    falls, usual = -steps[steps < 0], steps[steps > 0]
+    if not len(falls) or not len(usual):
+        return 0.0
+    plausible = _DISORDER * float(np.median(usual))
+    for period in cleaning_step.PERIODS:
+        if ((falls < period) & (falls >= period - plausible)).any():
+            return period
+    return 0.0
+
+
+def _turned(codes: NDArray[np.int64], turns: Array) -> int:
+    """How often the clock has started again within tracks, together."""
+    order = np.lexsort((turns, codes))
+    first = np.append(True, np.diff(codes[order]) != 0)
+    last = np.append(first[1:], True)
+    return int((turns[order[last]] - turns[order[first]]).sum())
 
 
 @cache

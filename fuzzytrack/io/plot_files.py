@@ -144,7 +144,7 @@ class PlotFiles:
         decoder = self.decoder
         rules = replace(self.reading.cleaning, wrap=decoder.description.wrap)
         clock, column = decoder.clock, self.columns.time
-        return Cleaner(rules, clock.period, column=column, show=clock.show)
+        return Cleaner(rules, clock.period, column=column, show=clock.as_cell)
 
     def cleaned(self, pieces: Iterable[Piece], findings: Findings) -> Iterator[Piece]:
         """Take the faults out of the pieces of a run, and count them at the end.
@@ -152,13 +152,13 @@ class PlotFiles:
         Parameters
         ----------
         pieces : iterable of Piece
-            From `pieces`, or rows of it.
+            From `pieces`, or rows of it; one piece if the rows are to be sorted.
         findings : Findings
             Gets the counts.
         """
         cleaner = self.cleaner()
         for piece in pieces:
-            yield cleaner.advance(piece)
+            yield cleaner.advance(cleaner.in_order(piece) if self.reading.sort else piece)
         rest = cleaner.finish()
         if rest is not None:
             yield rest
@@ -242,8 +242,6 @@ class PlotFiles:
 
     def survey(self, measured: Piece) -> Survey:
         """What rows show that were read by `PlotDecoder.measured`."""
-        if self.reading.sort:
-            measured = measured.take(np.lexsort((measured.time, measured.ids.codes)))
         clean = joined(list(self.cleaned([measured], Findings())))
         codes = clean.ids.codes
         order = np.argsort(codes, kind="stable")

@@ -165,11 +165,7 @@ def read_recording(files: PlotFiles, progress: Progress | None = None) -> Record
     pieces = list(files.pieces(rows=None, findings=findings, progress=progress))
     if not pieces:
         raise no_rows(files.names[0])
-    piece = joined(pieces)
-    if files.reading.sort:
-        # Stable: the order of the file within a track.
-        piece = piece.take(np.lexsort((piece.time, piece.ids.codes)))
-    tracks = tracks_of(joined(list(files.cleaned([piece], findings))))
+    tracks = tracks_of(joined(list(files.cleaned([joined(pieces)], findings))))
     return Recording(files.names[0], files.columns, tracks, files.decoder, findings)
 
 

@@ -380,6 +380,29 @@ def test_time_of_any_number_of_turns_is_restored(period, steps, start):
     assert counts.wraps == true[-1] // period - true[0] // period
 
 
+@settings(max_examples=60)
+@given(st.permutations(range(12)), st.sampled_from([{}, {"wrap": 86_400}]))
+def test_rows_out_of_order_about_midnight_are_sorted(order, rules):
+    # Local disorder: each row moves by one or two places.
+    places = sorted(range(12), key=lambda k: k + 2.5 * (order[k] % 2))
+    rows = piece(wrapped(86_400, 4)).take(np.array(places))
+    cleaner = Cleaner(Cleaning(**rules))
+    out = cleaner.advance(cleaner.in_order(rows))
+    assert plots(joined([out])) == [10.0 * k for k in range(12)]
+    assert np.diff(out.time).tolist() == [4] * 11
+    assert cleaner.counts == CleaningCounts(wraps=1, period=86_400)
+
+
+def test_tracks_are_sorted_each_by_itself():
+    rows = piece([3, 1, 2, 0, 1], [30, 1, 20, 0, 10], ids="abaaa")
+    cleaner = Cleaner(Cleaning())
+    out = cleaner.advance(cleaner.in_order(rows))
+    assert [out.ids[k] for k in range(5)] == list("aaaab")
+    assert out.plots.ravel().tolist() == [0, 10, 20, 30, 1]
+    assert cleaner.counts == CleaningCounts()
+    assert len(Cleaner(Cleaning(wrap=60)).in_order(piece([]))) == 0
+
+
 # -------------------------------------------------------------------- any pieces, any way
 
 
