@@ -20,6 +20,7 @@ from fuzzytrack.io.time_cells import numbers
 from fuzzytrack.recordings.last_plots import LastPlots
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
+from fuzzytrack.trackers.result import velocity_over_ground
 
 __all__ = ["TrackRows", "TrackTable"]
 
@@ -190,7 +191,10 @@ class TrackRows:
             deviations = np.sqrt(outputs["position_variance"])
             values |= {f"{axis}_sd": deviations[:, k] for k, axis in enumerate(table.axes)}
         if table.moves_on_ground:
-            velocity = np.where(since.moving[:, None], outputs["velocity"][:, :2], np.nan)
+            ground = velocity_over_ground(
+                *(outputs[name] for name in ("predicted", "filtered", "velocity"))
+            )
+            velocity = np.where(since.moving[:, None], ground, np.nan)
             values |= {"speed": motion.speed(velocity), "course": motion.course(velocity)}
         if table.frame is not None and table.on_earth:
             place = table.frame.to_geodetic(outputs["filtered"][:, :3])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.trackers.state import Gains, TrackState
 
-__all__ = ["KEPT", "ON_REQUEST", "TrackResult", "checked_keep"]
+__all__ = ["KEPT", "ON_REQUEST", "TrackResult", "checked_keep", "velocity_over_ground"]
 
 
 #: Outputs that a run can keep.
@@ -76,6 +76,11 @@ class TrackResult:
     def __getattr__(self, name: str) -> Any:
         if name in KEPT + ON_REQUEST:
             raise AttributeError(f"{name} was not kept; run with keep=(..., {name!r})")
+        # Their properties end here if something was not kept.
+        if name in ("speed", "course", "_over_ground"):
+            raise AttributeError(
+                "speed and course need predicted, filtered and velocity; run with these in keep"
+            )
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __repr__(self) -> str:
@@ -90,6 +95,56 @@ class TrackResult:
     def coasted(self) -> NDArray[np.bool_]:
         """Where the track was carried on without a plot."""
         return np.isnan(self.innovation) & ~np.isnan(self.predicted)
+
+    @property
+    def _over_ground(self) -> Array:
+        return velocity_over_ground(self.predicted, self.filtered, self.velocity)
+
+    @property
+    def speed(self) -> Array:
+        """Speed over ground (m/s), shape (n_steps, ...batch): of the first two axes.
+
+        NaN if it is unknown. Needs `predicted`, `filtered` and `velocity`, and two axes.
+        """
+        from fuzzytrack.io import motion
+
+        return motion.speed(self._over_ground)
+
+    @property
+    def course(self) -> Array:
+        """Course over ground, shape (n_steps, ...batch): degrees clockwise from north, [0, 360).
+
+        The first two axes point east and north. NaN if it is unknown, or the target stands still.
+        Needs `predicted`, `filtered` and `velocity`, and two axes.
+        """
+        from fuzzytrack.io import motion
+
+        return motion.course(self._over_ground)
+
+
+def velocity_over_ground(predicted: Array, filtered: Array, velocity: Array) -> Array:
+    """Velocity on the first two axes, NaN where it is not known yet.
+
+    Parameters
+    ----------
+    predicted, filtered, velocity : ndarray, shape (..., n_axes)
+        Of a result.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two axes.
+    """
+    if velocity.ndim < 2 or velocity.shape[-1] < 2:
+        raise ValueError(
+            f"velocity: shape {velocity.shape}; speed and course need two axes, east and north"
+        )
+    ground, none = velocity[..., :2], np.isnan(predicted[..., :2])
+    # Of an axis that has just started; the two may start at different plots.
+    still = none & (ground == 0)
+    unknown = still.all(axis=-1) | (still.any(axis=-1) & ~none.all(axis=-1))
+    unknown |= np.isnan(filtered[..., :2]).any(axis=-1)
+    return np.where(unknown[..., None], np.nan, ground)
 
 
 def checked_keep(keep: Sequence[str] | None, argument: str = "keep") -> tuple[str, ...]:
