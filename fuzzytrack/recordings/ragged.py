@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.recordings.judge import Judge, JudgeMemory
+from fuzzytrack.recordings.judged import Judged, run_judged
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
@@ -17,7 +19,7 @@ from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
-__all__ = ["Batch", "batches", "join_tracks", "run_tracks"]
+__all__ = ["Batch", "batches", "join_tracks", "run_judged_tracks", "run_tracks"]
 
 
 # Tracks of one batch are at least this part of the longest: padding costs a quarter at most.
@@ -144,6 +146,62 @@ def run_tracks(
         done += len(batch.members)
         if progress is not None:
             progress(done / len(tracks))
+    return [results[k] for k in range(len(tracks))]
+
+
+def run_judged_tracks(
+    tracker: Tracker | str,
+    tracks: Sequence[tuple[Array, Array]],
+    sigma: ArrayLike | None,
+    judge: Judge,
+    progress: Progress | None = None,
+    *,
+    sigmas: Sequence[Array] | None = None,
+    keep: Sequence[str] | None = None,
+) -> list[Judged]:
+    """Run a tracker over many tracks whose plots are judged, with the same results as one by one.
+
+    Parameters
+    ----------
+    tracker, tracks, sigma, progress, sigmas, keep
+        As for `run_tracks`.
+    judge : Judge
+        What happens to plots; see `fuzzytrack.recordings.judged.run_judged`.
+
+    Returns
+    -------
+    list of Judged
+        One for each track. Its `measured` are the plots as they were given, and positions on a
+        circle are within one turn. The state is None.
+
+    Raises
+    ------
+    DataError, ValueError
+        As `fuzzytrack.recordings.judged.run_judged`.
+    """
+    tracker = as_tracker(tracker)
+    if not tracks:
+        return []
+    gap = np.full((1, tracks[0][1].shape[1]), np.nan)
+    pool = np.concatenate([*(z for _, z in tracks), gap])
+    noise = None if sigmas is None else np.concatenate([*sigmas, gap])
+    results: dict[int, Judged] = {}
+    for batch in batches([t for t, _ in tracks]):
+        own = sigma if noise is None else noise[batch.places]
+        whole = run_judged(tracker, batch.times, pool[batch.places], own, judge, keep=keep)
+        for column, member in enumerate(batch.members.tolist()):
+            t, z = tracks[member]
+            cut = np.s_[: len(t), column]
+            result = _member(whole.result, column, len(t))
+            kept = {name: getattr(result, name) for name in result.kept}
+            if judge.circle is not None:
+                for name in {"predicted", "filtered"} & kept.keys():
+                    kept[name] = judge.circle.wrapped(kept[name])
+            memory = JudgeMemory(whole.memory.numbers[column : column + 1])
+            result = TrackResult.of(result.time, z, None, kept)
+            results[member] = Judged(result, whole.rejected[cut], whole.begins[cut], memory)
+        if progress is not None:
+            progress(len(results) / len(tracks))
     return [results[k] for k in range(len(tracks))]
 
 

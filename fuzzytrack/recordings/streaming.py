@@ -9,15 +9,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fuzzytrack.arrays import Array
+from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.lanes.layout import GAINS
+from fuzzytrack.recordings.judge import Judge, JudgeMemory
+from fuzzytrack.recordings.judged import run_judged
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.compilation import announce
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.result import checked_keep
+from fuzzytrack.trackers.state import TrackState
 from fuzzytrack.trackers.track_store import Slots, TrackStore
 
 __all__ = ["OpenTracks", "TrackedPiece", "run_iter"]
@@ -34,10 +37,15 @@ class TrackedPiece:
     outputs : mapping of str to ndarray, shape (n_rows, n_axes)
         The outputs in `keep`, for each row of the piece: predicted, filtered, velocity,
         acceleration, innovation, and alpha, beta, gamma; see `fuzzytrack.TrackResult`.
+    rejected, begins : ndarray of bool, shape (n_rows,), optional
+        Plots that were judged, and not used, or started their track again; without a judge there
+        are none.
     """
 
     piece: Piece
     outputs: Mapping[str, Array]
+    rejected: Mask | None = None
+    begins: Mask | None = None
 
     def __repr__(self) -> str:
         return summary(self, "piece", "outputs")
@@ -49,6 +57,7 @@ def run_iter(
     *,
     sigma: ArrayLike | None = None,
     keep: Sequence[str] | None = None,
+    judge: Judge | None = None,
 ) -> Iterator[TrackedPiece]:
     """Run a tracker over many tracks, piece by piece.
 
@@ -66,6 +75,9 @@ def run_iter(
     keep : sequence of str, optional
         Which outputs to keep, of predicted, filtered, velocity, acceleration, innovation and gains;
         all unless given.
+    judge : Judge, optional
+        What happens to plots before they are used; see `fuzzytrack.recordings.judged.run_judged`.
+        Positions on a circle are given within one turn.
 
     Yields
     ------
@@ -98,7 +110,7 @@ def run_iter(
     [nan nan nan]
     [20.  29.3]
     """
-    tracks = OpenTracks(tracker, sigma, keep)
+    tracks = OpenTracks(tracker, sigma, keep, judge)
     for piece in pieces:
         yield tracks.advance(piece)
 
@@ -108,7 +120,7 @@ class OpenTracks:
 
     Parameters
     ----------
-    tracker, sigma, keep
+    tracker, sigma, keep, judge
         As for `run_iter`.
 
     Raises
@@ -122,12 +134,15 @@ class OpenTracks:
         tracker: LaneTracker | str,
         sigma: ArrayLike | None = None,
         keep: Sequence[str] | None = None,
+        judge: Judge | None = None,
     ) -> None:
-        self.tracker, self.sigma = as_lane_tracker(tracker), sigma
+        self.tracker, self.sigma, self.judge = as_lane_tracker(tracker), sigma, judge
         self._keep = checked_keep(keep)
         self._slot: dict[str, int] = {}
         self._store: TrackStore | None = None
+        # Beside the store, for each slot: first time, and memory of the judge.
         self._first = np.empty(0)
+        self._memory = np.empty((0, 0, 0))
 
     def __len__(self) -> int:
         """Number of tracks so far."""
@@ -154,11 +169,16 @@ class OpenTracks:
             As for `run_iter`. Make new tracks then: some may have been advanced, others not.
         """
         names = [name for kept in self._keep for name in (GAINS if kept == "gains" else (kept,))]
-        outputs = {name: np.empty(piece.plots.shape) for name in names}
+        outputs: dict[str, Array] = {name: np.empty(piece.plots.shape) for name in names}
+        marks = (None, None) if self.judge is None else np.zeros((2, len(piece.time)), np.bool_)
+        tracked = TrackedPiece(piece, outputs, *marks)
         if len(piece.time):
             _check_finite(piece)
-            self._advance(piece, outputs, self._store_for(piece))
-        return TrackedPiece(piece, outputs)
+            self._advance(tracked, self._store_for(piece))
+        if self.judge is not None and self.judge.circle is not None:
+            for name in {"predicted", "filtered"} & outputs.keys():
+                outputs[name] = self.judge.circle.wrapped(outputs[name])
+        return tracked
 
     def _store_for(self, piece: Piece) -> TrackStore:
         n_axes = piece.plots.shape[1]
@@ -169,7 +189,8 @@ class OpenTracks:
             raise ValueError(f"plots: {n_axes} axes; the pieces before have {self._store.n_axes}")
         return self._store
 
-    def _advance(self, piece: Piece, outputs: Mapping[str, Array], store: TrackStore) -> None:
+    def _advance(self, tracked: TrackedPiece, store: TrackStore) -> None:
+        piece = tracked.piece
         tracks = piece.tracks
         codes = tracks.codes
         order = np.argsort(codes, kind="stable")
@@ -190,21 +211,49 @@ class OpenTracks:
         for members in np.split(by_kind, cuts):
             steps = np.arange(counts[members[0]])[:, None]
             places = order[starts[members] + steps]
-            state = None if new[members[0]] else store.gather(slots[members])
-            sigma = self.sigma if piece.sigma is None else piece.sigma[places]
-            result = self.tracker.run(
-                piece.time[places], piece.plots[places], sigma, state=state, keep=self._keep
-            )
-            for name, values in outputs.items():
-                values[places] = getattr(result.gains if name in GAINS else result, name)
-            assert result.state is not None
-            if state is None:
-                begun = store.add(result.state)
-                self._slot.update(zip([names[k] for k in members], begun.tolist(), strict=True))
-                self._first.resize(store.room, refcheck=False)
-                self._first[begun] = result.time[0]
+            before = None if new[members[0]] else slots[members]
+            state, memory = self._run(tracked, places, before, store)
+            if before is None:
+                before = store.add(state)
+                self._slot.update(zip([names[k] for k in members], before.tolist(), strict=True))
+                self._make_room(store)
+                self._first[before] = piece.time[places[0]]
             else:
-                store.scatter(slots[members], result.state)
+                store.scatter(before, state)
+            if memory is not None:
+                self._memory[before] = memory
+
+    def _run(
+        self, tracked: TrackedPiece, places: Slots, slots: Slots | None, store: TrackStore
+    ) -> tuple[TrackState, Array | None]:
+        """Run tracks over some rows, from the states in their slots; states and memories after."""
+        piece, memory = tracked.piece, None
+        t, z = piece.time[places], piece.plots[places]
+        sigma = self.sigma if piece.sigma is None else piece.sigma[places]
+        state = None if slots is None else store.gather(slots)
+        if self.judge is None:
+            result = self.tracker.run(t, z, sigma, state=state, keep=self._keep)
+        else:
+            before = None if slots is None else JudgeMemory(self._memory[slots])
+            found = run_judged(
+                self.tracker, t, z, sigma, self.judge, state=state, memory=before, keep=self._keep
+            )
+            result, memory = found.result, found.memory.numbers
+            assert tracked.rejected is not None
+            assert tracked.begins is not None
+            tracked.rejected[places], tracked.begins[places] = found.rejected, found.begins
+        for name, values in tracked.outputs.items():
+            values[places] = getattr(result.gains if name in GAINS else result, name)
+        assert result.state is not None
+        return result.state, memory
+
+    def _make_room(self, store: TrackStore) -> None:
+        """Make room beside the store, as much as it has."""
+        self._first.resize(store.room, refcheck=False)
+        if self.judge is not None and len(self._memory) < store.room:
+            grown = JudgeMemory.fresh(store.room, store.n_axes).numbers
+            grown[: len(self._memory)] = self._memory.reshape(-1, *grown.shape[1:])
+            self._memory = grown
 
 
 # -------------------------------------------------------------------- checks
