@@ -213,7 +213,8 @@ class _Run:
             part = _Part(self, first, end, tracks, new)
             again += part.advance()
             for step in np.unique(part.begins):
-                restarted = part.restarted[part.begins == step]
+                # In order, since all tracks in order are taken without a copy.
+                restarted = np.sort(part.restarted[part.begins == step])
                 self.begins[step, restarted] = True
                 waiting.append((int(step), restarted, True))
         self.last = self.times[end - 1].copy()

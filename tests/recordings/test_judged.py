@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 from fuzzytrack import AlphaBetaTracker, DataError, FixedGains
@@ -30,6 +30,8 @@ TRACKERS = {
     "window-search": make_tracker("window-search:window=3"),
 }
 GATE = Judge(Gate())
+# A failure that takes minutes to make smaller is no help.
+NO_SHRINKING = [Phase.explicit, Phase.reuse, Phase.generate]
 OUTPUTS = ("predicted", "filtered", "velocity", "acceleration", "innovation")
 
 
@@ -161,8 +163,8 @@ def spiky(seed, n, n_tracks, n_axes, share=0.1, missed=0.1):
 @pytest.mark.parametrize("n_axes", [1, 2])
 @pytest.mark.parametrize("name", TRACKERS)
 def test_trackers(name, n_axes):
-    t, z = spiky(1, 90, 4, n_axes)
-    found = check(TRACKERS[name], t, z, 1.0, GATE, [1, 2, 40, 41, 89])
+    t, z = spiky(1, 60, 2, n_axes)
+    found = check(TRACKERS[name], t, z, 1.0, GATE, [1, 2, 40, 41, 59])
     assert found.rejected.any()
 
 
@@ -171,6 +173,8 @@ def test_tracks_begin_again():
     assert sum(each.begins.sum() for each in found) > 3
 
 
+@example(seed=1, n=6, n_tracks=2, share=0.7, again=0, cuts=[])
+@example(seed=0, n=39, n_tracks=3, share=0.7, again=0, cuts=[])
 @given(
     seed=st.integers(0, 10_000),
     n=st.integers(1, 40),
@@ -179,7 +183,7 @@ def test_tracks_begin_again():
     again=st.integers(0, 4),
     cuts=st.lists(st.integers(0, 40), max_size=5),
 )
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20, deadline=None, phases=NO_SHRINKING)
 def test_any_spikes_gaps_and_cuts(seed, n, n_tracks, share, again, cuts):
     t, z = spiky(seed, n, n_tracks, 2, share)
     cuts = [min(cut, n) for cut in cuts]
@@ -193,7 +197,7 @@ def test_any_spikes_gaps_and_cuts(seed, n, n_tracks, share, again, cuts):
     gate=st.sampled_from([None, Gate(8.0)]),
     cuts=st.lists(st.integers(0, 50), max_size=4),
 )
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20, deadline=None, phases=NO_SHRINKING)
 def test_any_angles(seed, rate, gate, cuts):
     rng = np.random.default_rng(seed)
     t = np.cumsum(rng.uniform(0.2, 2.0, 50))
