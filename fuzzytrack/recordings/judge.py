@@ -62,6 +62,8 @@ class Gate:
 class Circle:
     """Angles on a circle: each plot is taken in the turn that is nearest to its prediction.
 
+    The second plot of a track, for which there is none, is taken in the turn nearest to the first.
+
     Parameters
     ----------
     period : float
@@ -178,6 +180,7 @@ def judged(
     given: Array,
     rejected: Mask,
     predicted: Array,
+    position: Array,
     memory: Array,
 ) -> Verdict:
     """Judge plots by the predictions of a run over some of them.
@@ -197,14 +200,20 @@ def judged(
         Plots that it did not get.
     predicted : ndarray, shape (n_steps, n_tracks, n_axes)
         Predictions of the run.
+    position : ndarray, shape (n_tracks, n_axes)
+        Where the tracks were before these plots; NaN of new ones.
     memory : ndarray, shape (n_tracks, n_axes, 5)
         Memory before the first of these plots.
     """
     turns = np.zeros((1, 1, 1))
     if judge.circle is not None:
+        near = predicted
+        if (np.isnan(predicted) & ~np.isnan(plots)).any():
+            # The second plot of a track lies near the first.
+            near = np.where(np.isnan(predicted), _before(given, position), predicted)
         with np.errstate(invalid="ignore", over="ignore"):
-            turns = np.round((predicted - plots) / judge.circle.period)
-        # A track that has no prediction begins in the turn of its first plot.
+            turns = np.round((near - plots) / judge.circle.period)
+        # The first plot stays in its turn.
         turns = np.where(np.isfinite(turns), turns, 0.0)
         plots = plots + judge.circle.period * turns
     if judge.gate is None:
@@ -300,16 +309,19 @@ def guessed(
 def _turns(period: float, plots: Array, position: Array) -> Array:
     """Turns that bring each plot near the one before it."""
     # A new track begins in the turn of its first plot, as if it had been there before.
-    seen = ~np.isnan(plots)
-    start = np.take_along_axis(plots, np.argmax(seen, axis=0)[None], axis=0)
-    series = np.concatenate([np.where(np.isnan(position)[None], start, position), plots])
-    known = ~np.isnan(series)
-    place = np.maximum.accumulate(
-        np.where(known, np.arange(len(series))[:, None, None], 0), axis=0
-    )[:-1]
+    start = np.take_along_axis(plots, np.argmax(~np.isnan(plots), axis=0)[None], axis=0)[0]
+    before = _before(plots, np.where(np.isnan(position), start, position))
     with np.errstate(invalid="ignore"):
-        steps = np.round((np.take_along_axis(series, place, axis=0) - plots) / period)
+        steps = np.round((before - plots) / period)
     return np.cumsum(np.where(np.isfinite(steps), steps, 0.0), axis=0)
+
+
+def _before(plots: Array, position: Array) -> Array:
+    """The plot before each that is not missed; at first where the tracks were."""
+    series = np.concatenate([position[None], plots])
+    steps = np.arange(len(series))[:, None, None]
+    place = np.maximum.accumulate(np.where(np.isnan(series), 0, steps), axis=0)
+    return np.asarray(np.take_along_axis(series, place[:-1], axis=0))
 
 
 def _spikes(width: float, times: Array, plots: Array, sigma: Array) -> Mask:

@@ -321,10 +321,10 @@ class _Part:
         self._choose(tracks)
         n_axes = run.n_axes
         self.memory = JudgeMemory.fresh(len(tracks), n_axes).numbers if new else run.memory[tracks]
-        position = np.full((len(tracks), n_axes), math.nan)
+        self.position = np.full((len(tracks), n_axes), math.nan)
         if not new:
-            position = run.state(tracks).position.reshape(position.shape)
-        self.rejected, turns = guessed(run.judge, self.times, self.plots, self.sigma, position)
+            self.position = run.state(tracks).position.reshape(self.position.shape)
+        self.rejected, turns = guessed(run.judge, self.times, self.plots, self.sigma, self.position)
         self.turns = np.broadcast_to(turns, self.plots.shape) if run.judge.circle else turns
         # Tracks that start again, and when.
         self.restarted, self.begins = tracks[:0], np.empty(0, dtype=np.int64)
@@ -347,7 +347,7 @@ class _Part:
             predicted = np.asarray(result.predicted).reshape(plots.shape)
             verdict = judged(
                 run.judge, self.times, self.plots, self.sigma, plots, self.rejected, predicted,
-                self.memory,
+                self.position, self.memory,
             )  # fmt: skip
             wrong = self._wrong(verdict)
             done: Mask = np.asarray(~wrong.any(axis=0))
@@ -386,5 +386,5 @@ class _Part:
             shift = right - self.turns[where, columns]
             later = np.arange(len(self.plots))[:, None] >= where
             self.turns = self.turns[:, chosen] + later[..., None] * shift
-        self.memory = self.memory[chosen]
+        self.memory, self.position = self.memory[chosen], self.position[chosen]
         self._choose(self.tracks[chosen])
