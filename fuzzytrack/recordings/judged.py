@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
-from fuzzytrack.lanes.layout import GAINS, Rows
+from fuzzytrack.lanes.layout import GAINS
 from fuzzytrack.lanes.plots import as_plots, as_times, infinite_plot, plot_sigmas, time_steps
 from fuzzytrack.recordings.judge import Judge, JudgeMemory, Verdict, guessed, judged, used
 from fuzzytrack.reprs import summary
@@ -171,7 +171,8 @@ class _Run:
         self.memory = JudgeMemory.fresh(self.n_tracks, self.n_axes).numbers
         # States of lanes, shape (rows.kept, tracks, lanes of a track); None before the first plot.
         self.lanes: Array | None = None
-        self.rows: Rows | None = None
+        # A state whose other attributes are those of all.
+        self.like: TrackState | None = None
         self.last = np.full(self.n_tracks, math.nan)
 
     def begin(self, state: TrackState | None, memory: JudgeMemory | None) -> None:
@@ -185,7 +186,7 @@ class _Run:
             self.memory = memory.numbers.copy()
         if state is not None:
             self.last[:] = np.reshape(np.broadcast_to(state.time, state.shape[:-1]), -1)
-            self._put(np.arange(self.n_tracks), state.lanes, state.rows)
+            self._put(np.arange(self.n_tracks), state.lanes, state)
 
     def advance(self) -> None:
         """Run over all steps."""
@@ -248,16 +249,17 @@ class _Run:
     def state(self, tracks: NDArray[np.intp]) -> TrackState:
         """State of some tracks."""
         assert self.lanes is not None
-        assert self.rows is not None
+        assert self.like is not None
         lanes = self.lanes[:, tracks].reshape(len(self.lanes), -1)
         shape, time = self._shape(len(tracks)), self.last[tracks]
-        return TrackState(time if len(shape) > 1 else time[0], shape, lanes, self.rows)
+        own = time if len(shape) > 1 else time[0]
+        return replace(self.like, time=own, shape=shape, lanes=lanes)
 
-    def _put(self, tracks: NDArray[np.intp], lanes: Array, rows: Rows) -> None:
+    def _put(self, tracks: NDArray[np.intp], lanes: Array, like: TrackState) -> None:
         """Put the numbers of some tracks into place."""
         each = lanes.reshape(len(lanes), len(tracks), -1)
         if self.lanes is None:
-            self.rows = rows
+            self.like = like
             self.lanes = np.empty((len(lanes), self.n_tracks, each.shape[2]))
         self.lanes[:, tracks] = each
 
@@ -288,7 +290,7 @@ class _Run:
         self.memory[tracks[chosen]] = memory[chosen]
         if isinstance(state, TrackState) and isinstance(self.tracker, LaneTracker):
             lanes = state.lanes.reshape(len(state.lanes), len(tracks), -1)[:, chosen]
-            self._put(tracks[chosen], lanes, state.rows)
+            self._put(tracks[chosen], lanes, state)
 
     def result(self, state: TrackState | None) -> Judged:
         """What the run gives."""
@@ -299,9 +301,10 @@ class _Run:
         }
         if "gains" in self.keep:
             outputs["gains"] = Gains(*(outputs.pop(name) for name in GAINS))
-        if self.lanes is not None and self.rows is not None and len(self.measured):
+        if self.lanes is not None and self.like is not None and len(self.measured):
             lanes = self.lanes.reshape(len(self.lanes), -1)
-            state = TrackState(self.given_times[-1].copy(), shape[1:], lanes, self.rows)
+            time = self.given_times[-1].copy()
+            state = replace(self.like, time=time, shape=shape[1:], lanes=lanes)
         result = TrackResult.of(self.given_times, self.used.reshape(shape), state, outputs)
         return Judged(
             result,
