@@ -13,7 +13,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.io.reading import Reading
 
-__all__ = ["reads_plots", "reads_positions"]
+__all__ = ["number_or", "reads_plots", "reads_positions"]
 
 _Text = str | None
 
@@ -103,7 +103,7 @@ def plot_reading(
     return Reading.of(
         time=None if times is None else times[0] if len(times) == 1 else tuple(times),
         time_unit=time_unit,
-        wrap=_number_or(wrap, "--wrap", {"auto": "auto", "none": None}),
+        wrap=number_or(wrap, "--wrap", {"auto": "auto", "none": None}),
         id=id,
         axes=_names(axes, "--axes"),
         polar=_names(polar, "--polar"),
@@ -121,9 +121,9 @@ def plot_reading(
         valid=tuple(each for text in valid or () for each in _ranges(text)),
         duplicates=duplicates,
         stale=math.inf if stale else None,
-        least_step=None if least_step is None else _number_or(least_step, "--least-step", {}),
-        max_gap=_number_or(max_gap, "--max-gap", {"auto": "auto", "none": None}),
-        max_coast=None if max_coast is None else _number_or(max_coast, "--max-coast", {}),
+        least_step=None if least_step is None else number_or(least_step, "--least-step", {}),
+        max_gap=number_or(max_gap, "--max-gap", {"auto": "auto", "none": None}),
+        max_coast=None if max_coast is None else number_or(max_coast, "--max-coast", {}),
         delimiter={"tab": "\t", "\\t": "\t"}.get(delimiter or "", delimiter),
         decimal=decimal,
         na=() if na is None else tuple(word.strip() for word in na.split(",")),
@@ -174,7 +174,7 @@ def _names(text: str | None, option: str) -> tuple[str, ...] | None:
     return None if text is None else tuple(options.names(text, option))
 
 
-def _number_or(text: str, option: str, words: dict[str, Any]) -> Any:
+def number_or(text: str, option: str, words: dict[str, Any]) -> Any:
     """A number > 0, or one of some words."""
     if text in words:
         return words[text]

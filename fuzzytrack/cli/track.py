@@ -20,7 +20,7 @@ from fuzzytrack.cli.output import (
     with_error,
 )
 from fuzzytrack.cli.pictures import check_picture, save_picture
-from fuzzytrack.cli.plot_options import reads_plots
+from fuzzytrack.cli.plot_options import number_or, reads_plots
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import check_table
@@ -64,6 +64,13 @@ def track(
             help=f"See `fuzzytrack trackers`. [default: {DEFAULT_TRACKER}]",
         ),
     ] = None,
+    gate: Annotated[
+        str,
+        typer.Option(
+            metavar="K|auto|none",
+            help="Do not use plots more than K sigma from their prediction. [auto: 20]",
+        ),
+    ] = "auto",
     output: Annotated[
         str | None,
         typer.Option(
@@ -101,6 +108,7 @@ def track(
     A folder, or a file of more than 100 MB, is tracked in pieces, and may be larger than memory.
     """
     options.load_plugins(plugin)
+    width = number_or(gate, "--gate", {"auto": "auto", "none": None})
     chosen = make_tracker(DEFAULT_TRACKER if tracker is None else tracker)
     apart = scheduler is not None or jobs > 1
     large = len(files) == 1 and _is_large(files[0]) and isinstance(chosen, LaneTracker)
@@ -111,8 +119,9 @@ def track(
         _check_pieces(reading.sort, plot)
         as_lane_tracker(chosen)
         folder = _folder(output) if apart else ""
-        prepared = prepare(files, tracker, reading)
-        job = LargeJob(prepared.files, as_lane_tracker(prepared.tracker), chunk_rows or ROWS)
+        prepared = prepare(files, tracker, reading, width)
+        made = as_lane_tracker(prepared.tracker)
+        job = LargeJob(prepared.files, made, chunk_rows or ROWS, prepared.judge)
         with progress("tracking") as watch:
             if apart:
                 totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
@@ -122,7 +131,7 @@ def track(
     else:
         _look_ahead(files[0], output, plot)
         with progress("tracking") as watch:
-            tracked = track_recording(files[0], tracker, reading, watch, output)
+            tracked = track_recording(files[0], tracker, reading, watch, output, gate=width)
         if output is not None:
             with progress("writing") as watch:
                 tracked.write(output, watch, quote_formulas=quote_formulas)

@@ -25,6 +25,9 @@ class Findings:
         What the rules of `Cleaning` have changed.
     unnamed : int
         Rows without an identity, which belong to no track and were left out.
+    rejected, restarts : int
+        Plots beyond the gate of their track, which were not used; tracks that began again after
+        several of these.
     notes : list of str
         What was guessed, and what a user might want to know, each once and in a sentence.
     """
@@ -32,6 +35,8 @@ class Findings:
     impossible: Counter[str] = field(default_factory=Counter)
     cleaning: CleaningCounts = field(default_factory=CleaningCounts)
     unnamed: int = 0
+    rejected: int = 0
+    restarts: int = 0
     notes: list[str] = field(default_factory=list)
 
     def note(self, sentences: Iterable[str]) -> None:
@@ -43,6 +48,8 @@ class Findings:
         self.impossible.update(other.impossible)
         self.cleaning = self.cleaning + other.cleaning
         self.unnamed += other.unnamed
+        self.rejected += other.rejected
+        self.restarts += other.restarts
         self.note(other.notes)
 
     def sentences(self) -> tuple[str, ...]:
@@ -52,9 +59,18 @@ class Findings:
             for reason, count in self.impossible.items()
         )
         rows = counted(self.unnamed, "row") + " without an identity left out"
-        return (*([rows] if self.unnamed else []), *missed, *self.cleaning.sentences())
+        gated = counted(self.rejected, "plot") + " beyond the gate, not used"
+        again = counted(self.restarts, "track") + " started again after several of these"
+        return (
+            *([rows] if self.unnamed else []),
+            *missed,
+            *self.cleaning.sentences(),
+            *([gated] if self.rejected else []),
+            *([again] if self.restarts else []),
+        )
 
     def to_json_dict(self) -> dict[str, Any]:
         """The same in the types of JSON."""
-        faults = {"unnamed": self.unnamed, **self.impossible, **asdict(self.cleaning)}
+        own = {"unnamed": self.unnamed, "rejected": self.rejected, "restarts": self.restarts}
+        faults = {**own, **self.impossible, **asdict(self.cleaning)}
         return {"faults": faults, "notes": list(self.notes)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -57,6 +57,16 @@ class Track:
 
     def __repr__(self) -> str:
         return summary(self, "id", "plots")
+
+    def part(self, rows: slice) -> Track:
+        """Some rows that follow each other."""
+        return replace(
+            self,
+            time=self.time[rows],
+            plots=self.plots[rows],
+            sigma=None if self.sigma is None else self.sigma[rows],
+            time_cells=None if self.time_cells is None else self.time_cells[rows],
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from fuzzytrack.io.plot_files import ROWS, PlotFiles
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import recording_files
 from fuzzytrack.io.table import no_rows
+from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.partitions import track_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
@@ -40,11 +41,14 @@ class LargeJob:
         The tracker.
     rows : int
         Rows of a piece.
+    judge : Judge, optional
+        What happens to plots before they are used.
     """
 
     files: PlotFiles
     tracker: LaneTracker
     rows: int = ROWS
+    judge: Judge | None = None
 
     def __repr__(self) -> str:
         return summary(self, "tracker", "rows", files=len(self.files.inputs))
@@ -128,6 +132,7 @@ class LargeJob:
             some,
             output,
             inputs=self.files.paths,
+            judge=self.judge,
             quote_formulas=quote_formulas,
         )
         findings.merge(totals.findings)
@@ -172,6 +177,7 @@ class LargeJob:
                 output,
                 partitions=partitions,
                 rows=self.rows,
+                judge=self.judge,
                 executor=executor,
                 progress=progress,
             )

@@ -14,6 +14,7 @@ from fuzzytrack.io.files import PathLike, whole_folder
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.plot_files import ROWS, PlotFiles
 from fuzzytrack.io.table import no_rows
+from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.partition_files import read_partition, write_partitions
 from fuzzytrack.recordings.pipeline import track_pieces
 from fuzzytrack.recordings.totals import Totals
@@ -34,6 +35,7 @@ class _Job:
     partitions: int
     rows: int
     folder: str
+    judge: Judge | None
     expected: int = 0  # rows of a partition
 
     def sorted_file(self, number: int) -> Path:
@@ -51,6 +53,7 @@ def track_partitions(
     *,
     partitions: int = 16,
     rows: int = ROWS,
+    judge: Judge | None = None,
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> Totals:
@@ -69,6 +72,8 @@ def track_partitions(
         Number of partitions.
     rows : int
         Rows that a task holds at a time.
+    judge : Judge, optional
+        What happens to plots before they are used.
     executor : concurrent.futures.Executor, optional
         Runs the tasks; its workers must find the same files under the same names. Unless given, the
         tasks run in this process, one after the other.
@@ -99,7 +104,7 @@ def track_partitions(
         raise ValueError(f"partitions must be at least 1, got {partitions}")
     made, totals = as_lane_tracker(tracker), Totals()
     with whole_folder(output) as draft:
-        job = _Job(made, files.absolute(), partitions, rows, str(draft))
+        job = _Job(made, files.absolute(), partitions, rows, str(draft), judge)
         job.sorted_file(0).parent.mkdir()
         steps = _Steps(len(files.inputs) + partitions, progress)
         sort = partial(_sort_file, job)
@@ -168,4 +173,4 @@ def _track_partition(job: _Job, partition: int) -> Totals:
             job.sorted_file(number), n_axes, partition, job.partitions, file=file, rows=job.rows
         )
     )
-    return track_pieces(job.tracker, job.files, pieces, job.part(partition))
+    return track_pieces(job.tracker, job.files, pieces, job.part(partition), judge=job.judge)

@@ -8,6 +8,8 @@ from contextlib import ExitStack
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.plot_files import PlotFiles
+from fuzzytrack.recordings.judge import Judge
+from fuzzytrack.recordings.restarts import Restarts
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_table import TrackTable
@@ -24,6 +26,7 @@ def track_pieces(
     output: PathLike | None,
     *,
     inputs: tuple[PathLike, ...] = (),
+    judge: Judge | None = None,
     quote_formulas: bool = False,
 ) -> Totals:
     """Clean and track pieces, count them, and write them as they come.
@@ -40,6 +43,8 @@ def track_pieces(
         File for the tracks, if there is to be one.
     inputs : tuple of str or path
         Files that must not be overwritten.
+    judge : Judge, optional
+        What happens to plots before they are used.
     quote_formulas : bool
         As for `fuzzytrack.io.table_writer`.
 
@@ -48,7 +53,8 @@ def track_pieces(
     Totals
     """
     table = TrackTable.of(files.decoder, tracker)
-    tracks, totals = OpenTracks(tracker, files.decoder.sigma, table.outputs), Totals()
+    tracks = OpenTracks(tracker, files.decoder.sigma, table.outputs, judge)
+    totals, restarts = Totals(), Restarts()
     with ExitStack() as stack:
         write = None
         if output is not None:
@@ -57,7 +63,10 @@ def track_pieces(
         for piece in files.cleaned(pieces, totals.findings):
             tracked = tracks.advance(piece)
             totals.add(tracked)
+            parts = tracked.piece
+            if tracked.begins is not None:
+                parts = restarts.advance(parts, tracked.begins)
             if write is not None:
-                write(tracked.piece, tracked.outputs)
+                write(parts, tracked.outputs)
     totals.close(len(tracks), tracks.duration)
     return totals

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from fuzzytrack.arrays import Mask
 from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.recording import Track
+from fuzzytrack.recordings.judged import Judged
+from fuzzytrack.trackers.result import TrackResult
+from fuzzytrack.trackers.state import Gains
 
-__all__ = ["Restarts"]
+__all__ = ["Restarts", "divided"]
 
 
 class Restarts:
@@ -44,3 +51,42 @@ class Restarts:
         counts = np.bincount(codes[begins], minlength=len(names))
         self._so_far.update({names[k]: int(counts[k]) for k in np.flatnonzero(counts).tolist()})
         return replace(piece, segments=segments)
+
+
+def divided(
+    tracks: Sequence[Track], judged: Sequence[Judged]
+) -> tuple[tuple[Track, ...], tuple[TrackResult, ...]]:
+    """Divide tracks where they start again, and number the segments of each identity anew.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        The segments of an identity in order.
+    judged : sequence of Judged
+        Result of each.
+    """
+    parts, results = [], []
+    for track, one in zip(tracks, judged, strict=True):
+        edges = [0, *np.flatnonzero(one.begins).tolist(), len(track.time)]
+        for start, end in pairwise(edges):
+            rows = slice(start, end)
+            parts.append(track.part(rows))
+            results.append(_part(one.result, rows))
+    seen: Counter[str] = Counter()
+    numbered = []
+    for part in parts:
+        numbered.append(replace(part, segment=seen[part.id]))
+        seen[part.id] += 1
+    return tuple(numbered), tuple(results)
+
+
+def _part(result: TrackResult, rows: slice) -> TrackResult:
+    if rows == slice(0, len(result.time)):
+        return result
+    kept: dict[str, Any] = {
+        name: getattr(result, name)[rows] for name in result.kept if name != "gains"
+    }
+    if "gains" in result.kept:
+        gains = result.gains
+        kept["gains"] = Gains(gains.alpha[rows], gains.beta[rows], gains.gamma[rows])
+    return TrackResult.of(result.time[rows], result.measured[rows], None, kept)

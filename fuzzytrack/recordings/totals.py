@@ -57,6 +57,9 @@ class Totals:
     def add(self, tracked: TrackedPiece) -> None:
         """Count the plots of a piece; tracks are counted by `close`."""
         outputs = tracked.outputs
+        if tracked.rejected is not None and tracked.begins is not None:
+            self.findings.rejected += int(tracked.rejected.sum())
+            self.findings.restarts += int(tracked.begins.sum())
         self._count(
             _seen(tracked.piece.plots),
             _squares(outputs["innovation"]),

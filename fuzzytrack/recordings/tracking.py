@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from fuzzytrack.errors import DataError
@@ -12,9 +12,12 @@ from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.plot_files import Input, PlotFiles
 from fuzzytrack.io.reading import Reading
-from fuzzytrack.io.recording import Recording, read_recording, recording_files
+from fuzzytrack.io.recording import Recording, Track, read_recording, recording_files
+from fuzzytrack.recordings.judge import Judge
+from fuzzytrack.recordings.judging import GateWidth, judge_of
 from fuzzytrack.recordings.notebook import html_of
-from fuzzytrack.recordings.ragged import join_tracks, run_tracks
+from fuzzytrack.recordings.ragged import join_tracks, run_judged_tracks, run_tracks
+from fuzzytrack.recordings.restarts import divided
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_table import TrackTable
 from fuzzytrack.recordings.track_writer import check_tracks, table_of_tracks, write_tracks
@@ -55,6 +58,8 @@ class PreparedPlots:
         The tracker.
     table : TrackTable
         Columns of the tracks.
+    judge : Judge or None
+        What happens to plots before they are used.
     findings : Findings
         Notes so far.
     """
@@ -62,6 +67,7 @@ class PreparedPlots:
     files: PlotFiles
     tracker: Tracker
     table: TrackTable
+    judge: Judge | None = None
     findings: Findings = field(default_factory=Findings)
 
     def __repr__(self) -> str:
@@ -77,7 +83,9 @@ def inputs_of(plots: Any) -> tuple[Input, ...]:
     return (FrameSource.of(plots),)
 
 
-def prepare(plots: Any, tracker: Tracker | str | None, reading: Reading) -> PreparedPlots:
+def prepare(
+    plots: Any, tracker: Tracker | str | None, reading: Reading, gate: GateWidth = "auto"
+) -> PreparedPlots:
     """Look at plots before they are tracked.
 
     Parameters
@@ -86,6 +94,8 @@ def prepare(plots: Any, tracker: Tracker | str | None, reading: Reading) -> Prep
         As for `track`.
     reading : Reading
         How they are read.
+    gate : float, "auto" or None
+        As for `track`.
 
     Raises
     ------
@@ -101,7 +111,8 @@ def prepare(plots: Any, tracker: Tracker | str | None, reading: Reading) -> Prep
     elif survey.missing:
         findings.note([survey.missing])
     made = _suited(chosen, files)
-    return PreparedPlots(files, made, TrackTable.of(files.decoder, made), findings)
+    table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate)
+    return PreparedPlots(files, made, table, judge, findings)
 
 
 def _suited(tracker: Tracker | str, files: PlotFiles) -> Tracker:
@@ -125,6 +136,7 @@ def track(
     plots: Any,
     tracker: Tracker | str | None = None,
     *,
+    gate: GateWidth = "auto",
     progress: Progress | None = None,
     **options: Any,
 ) -> TrackedRecording:
@@ -139,6 +151,10 @@ def track(
         The tracker, or what names it, see `fuzzytrack.trackers.catalog.make_tracker`. Unless given,
         ``maneuver``, or ``stiffness-damping`` if the noise of the plots can neither be estimated
         nor is given.
+    gate : float, "auto" or None
+        Plots whose innovation is larger are not used; in standard deviations of a plot, and wider
+        after gaps and in maneuvers, see `fuzzytrack.recordings.judge.Gate`. Unless given, 20 where
+        the noise of the plots is known; None is no gate.
     progress : callable, optional
         Called with the share of the work that is done.
     **options
@@ -172,7 +188,7 @@ def track(
     >>> tracked.results[0].velocity[-1].round(3)
     array([10.,  5.])
     """
-    return track_recording(plots, tracker, Reading.of(**options), progress)
+    return track_recording(plots, tracker, Reading.of(**options), progress, gate=gate)
 
 
 def track_recording(
@@ -181,29 +197,41 @@ def track_recording(
     reading: Reading,
     progress: Progress | None = None,
     output: PathLike | None = None,
+    *,
+    gate: GateWidth = "auto",
 ) -> TrackedRecording:
     """Track recorded plots that are read in a given way; see `track`.
 
     If the tracks could not be written to `output`, they are not made.
     """
-    prepared = prepare(plots, tracker, reading)
+    prepared = prepare(plots, tracker, reading, gate)
     if output is not None:
         check_tracks(output, prepared.table, prepared.files.paths)
     recording = read_recording(prepared.files, progress)
     prepared.findings.merge(recording.findings)
-    sigmas = [track.sigma for track in recording.tracks]
+    tracks, results = _run(prepared, recording.tracks, progress)
+    recording = replace(recording, tracks=tracks)
+    return TrackedRecording(recording, results, prepared.tracker, prepared.table, prepared.findings)
+
+
+def _run(
+    prepared: PreparedPlots, tracks: Sequence[Track], progress: Progress | None
+) -> tuple[tuple[Track, ...], tuple[TrackResult, ...]]:
+    """Tracks with their results; those that a gate starts again are divided there."""
+    sigmas = [track.sigma for track in tracks]
     known = [sigma for sigma in sigmas if sigma is not None]
-    results = run_tracks(
-        prepared.tracker,
-        [(track.time, track.plots) for track in recording.tracks],
-        prepared.files.decoder.sigma,
-        progress,
-        sigmas=known if len(known) == len(sigmas) else None,
-        keep=(*KEPT, *ON_REQUEST) if prepared.table.deviation else None,
-    )
-    return TrackedRecording(
-        recording, tuple(results), prepared.tracker, prepared.table, prepared.findings
-    )
+    given = [(track.time, track.plots) for track in tracks]
+    common: dict[str, Any] = {
+        "sigmas": known if len(known) == len(sigmas) else None,
+        "keep": (*KEPT, *ON_REQUEST) if prepared.table.deviation else None,
+    }
+    tracker, sigma, judge = prepared.tracker, prepared.files.decoder.sigma, prepared.judge
+    if judge is None:
+        return tuple(tracks), tuple(run_tracks(tracker, given, sigma, progress, **common))
+    judged = run_judged_tracks(tracker, given, sigma, judge, progress, **common)
+    prepared.findings.rejected += sum(int(one.rejected.sum()) for one in judged)
+    prepared.findings.restarts += sum(int(one.begins.sum()) for one in judged)
+    return divided(tracks, judged)
 
 
 @dataclass(frozen=True, eq=False)

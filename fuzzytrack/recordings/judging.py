@@ -1,0 +1,42 @@
+"""Which judge the plots of a recording get: a gate by their noise, and a circle for angles."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.recordings.judge import Circle, Gate, Judge
+
+__all__ = ["GateWidth", "judge_of"]
+
+#: Width of a gate in standard deviations of a plot; "auto" is that of `Gate`, None is no gate.
+GateWidth = float | Literal["auto"] | None
+
+
+def judge_of(decoder: PlotDecoder, gate: GateWidth = "auto") -> Judge | None:
+    """Judge for the plots of a recording.
+
+    Parameters
+    ----------
+    decoder : PlotDecoder
+        How the recording is read.
+    gate : float, "auto" or None
+        Width of the gate.
+
+    Returns
+    -------
+    Judge or None
+        None if plots need none.
+
+    Raises
+    ------
+    ValueError
+        If a width is given, and the noise of the plots is not known.
+    """
+    circle = None if decoder.period is None else Circle(decoder.period)
+    made = None
+    if gate is not None and decoder.noise_is_known:
+        made = Gate() if gate == "auto" else Gate(gate)
+    elif isinstance(gate, float | int):
+        raise ValueError("gate: needs the noise of the plots; `sigma` gives it")
+    return None if circle is None and made is None else Judge(made, circle)
