@@ -218,7 +218,7 @@ def _noise_sentence(decoder: PlotDecoder) -> str:
         return ""
     errors = decoder.noise_errors or (None,) * len(decoder.noise)
     shown = [_one_noise(*pair) for pair in zip(decoder.noise, errors, strict=True)]
-    if len(set(shown)) == 1:
+    if len(set(shown)) == 1 and not decoder.noise_is_polar:
         return shown[0]
     names = _noise_names(decoder)
     return ", ".join(f"{name} {each}" for name, each in zip(names, shown, strict=True))

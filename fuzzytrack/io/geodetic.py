@@ -188,21 +188,20 @@ class LocalFrame:
             np.where(flat, level.lat, lat), np.where(flat, level.lon, lon), np.asarray(alt)
         )
 
-    def remark(self, position: ArrayLike) -> str | None:
+    def remark(self, farthest: float, n_axes: int) -> str | None:
         """What to know of positions that are far from the origin; None if none is.
 
         Parameters
         ----------
-        position : array_like, shape (n, 2) or (n, 3)
-            East, north and perhaps up in m.
+        farthest : float
+            Largest distance in the plane of east and north (m).
+        n_axes : int
+            Two, or three with heights.
         """
-        places = np.asarray(position, dtype=np.float64)
-        distance = np.hypot(places[:, 0], places[:, 1])
-        farthest = float(np.max(distance, initial=0.0, where=np.isfinite(distance)))
         if farthest <= FAR:
             return None
         found = f"plots lie up to {farthest / 1e3:.0f} km from the origin of the local frame"
-        if places.shape[1] == 3:
+        if n_axes == 3:
             drop = EARTH_RADIUS - np.sqrt(max(EARTH_RADIUS**2 - farthest**2, 0.0))
             return (
                 f"{found}: there, up counts from a plane that is {drop / 1e3:.0f} km above the "

@@ -206,7 +206,7 @@ class PlotFiles:
         found = Findings() if findings is None else findings
         found.note(self.notes)
         sizes = [_size(each) for each in self.inputs]
-        total, before = max(1, sum(sizes)), 0
+        total, before, farthest = max(1, sum(sizes)), 0, 0.0
         for each, size in zip(self.inputs, sizes, strict=True):
 
             def watch(share: float, before: int = before, size: int = size) -> None:
@@ -218,9 +218,14 @@ class PlotFiles:
                     named = _named(table, self.columns)
                     found.unnamed += len(table.rows) - len(named.rows)
                     if len(named.rows):
-                        yield self.decoder.decode(named, found.impossible)
+                        piece = self.decoder.decode(named, found.impossible)
+                        farthest = max(farthest, _farthest(piece))
+                        yield piece
                 found.note(getattr(source, "notes", ()))
             before += size
+        if self.columns.position == "geodetic" and self.decoder.frame is not None:
+            told = self.decoder.frame.remark(farthest, len(self.columns.axes))
+            found.note([told] if told else [])
 
     def surveyed(self) -> tuple[PlotFiles, Survey]:
         """Look at the first rows for what is not given: noise, and the usual time between plots.
@@ -393,6 +398,12 @@ def _first_table(inputs: Sequence[Input], reading: Reading, columns: Columns) ->
     if seen:
         raise DataError(f"{_name(inputs[0])}: column {columns.id}: no row has an identity")
     raise no_rows(_name(inputs[0]))
+
+
+def _farthest(piece: Piece) -> float:
+    """Distance in the plane of the plot that is farthest from the origin."""
+    distance = np.linalg.norm(piece.plots[:, :2], axis=1)
+    return float(np.max(distance, initial=0.0, where=np.isfinite(distance)))
 
 
 def _named(table: Table, columns: Columns) -> Table:

@@ -187,19 +187,19 @@ def test_none_and_nothing():
     lost = frame.to_geodetic([[np.nan, 1.0], [7e6, 0.0]])
     assert np.isnan([lost.lat, lost.lon, lost.alt]).all()
     assert np.isnan(frame.to_geodetic([[np.nan, 1.0, 1.0]]).lat).all()
-    assert frame.remark(np.zeros((0, 2))) is None
+    assert frame.remark(0.0, 2) is None
 
 
 def test_short_distances_are_said():
     frame = LocalFrame(50.0, 5.0)
-    assert frame.remark([[499e3, 0.0], [np.nan, np.nan]]) is None
-    told = frame.remark([[0.0, 600e3]])
+    assert frame.remark(499e3, 2) is None
+    told = frame.remark(600e3, 2)
     assert "up to 600 km from the origin" in told
     assert "0.1% shorter" in told
     assert "0.4% lower" in told
-    assert "28 km above the ground" in frame.remark([[0.0, 600e3, 0.0]])
+    assert "28 km above the ground" in frame.remark(600e3, 3)
     # Where the plane has no ground below it.
-    assert "100.0% lower" in frame.remark([[7e6, 0.0]])
+    assert "100.0% lower" in frame.remark(7e6, 2)
 
 
 def test_the_figures_of_the_class():

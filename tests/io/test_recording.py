@@ -27,6 +27,21 @@ def table(pieces):
 # -------------------------------------------------------------------- tracks
 
 
+def test_places_far_from_the_origin_are_remarked(tmp_path):
+    """Once, however many pieces there are."""
+    far = "t,lat,lon\n0,50,5\n1,50,5.1\n2,50,13\n3,,\n4,50,14\n"
+    findings = Findings()
+    files = plot_files(written(tmp_path, far), geodetic=("lat", "lon"))
+    pieces = list(files.pieces(rows=1, findings=findings))
+    assert len(pieces) == 5
+    (told,) = (note for note in findings.notes if "km from the origin" in note)
+    assert "up to 644 km" in told
+    near = Findings()
+    files = plot_files(written(tmp_path, far[:25]), geodetic=("lat", "lon"))
+    list(files.pieces(findings=near))
+    assert not any("km from the origin" in note for note in near.notes)
+
+
 MARKS = ["", " ", "a", "b", "007"]
 
 
