@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 import io
 import os
 import stat
@@ -10,7 +9,6 @@ import sys
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from tempfile import SpooledTemporaryFile
 from typing import IO, Any
 
 from fuzzytrack.errors import DataError
@@ -81,6 +79,8 @@ class ByteStream(io.RawIOBase):
         start = self.take(4)
         self.put_back(start)
         if start[:2] == _GZIP:
+            import gzip
+
             unpacked: Any = gzip.GzipFile(fileobj=_Whole(self._back, self._raw))
         elif start == _ZSTD:
             unpacked = _zstd(self.file, _Whole(self._back, self._raw))
@@ -159,6 +159,9 @@ class _Kept:
     """What has been read of a pipe, and the rest of it."""
 
     def __init__(self, raw: Any) -> None:
+        # Few need it, and it imports much.
+        from tempfile import SpooledTemporaryFile
+
         self._raw = raw
         self._spool = SpooledTemporaryFile(_IN_MEMORY)  # noqa: SIM115
         weakref.finalize(self, self._spool.close)
