@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from fuzzytrack.io import Columns, Piece, PlotDescription
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.geodetic import LocalFrame
 from fuzzytrack.io.times import Clock
+from fuzzytrack.recordings.judge import Gate, Judge
+from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.track_table import TrackRows, TrackTable
 from fuzzytrack.trackers.catalog import make_tracker
 
@@ -231,3 +234,29 @@ def test_times_as_they_were_read(cells, typed, wanted):
     found = TrackRows(XY, typed=typed).times(piece)
     assert list(found) == wanted
     assert [type(value) for value in np.asarray(found).tolist()] == [type(x) for x in wanted]
+
+
+# -------------------------------------------------------------------- plots that were judged
+
+
+@pytest.mark.parametrize("cuts", [(0, 40), (0, 11, 23, 40)])
+def test_plots_that_a_gate_rejects(cuts):
+    """A wild plot, and a track that begins again elsewhere; in one piece and in several."""
+    t = np.arange(40.0)
+    z = np.c_[10 * t, 5 * t] + np.random.default_rng(0).normal(0, 2, (40, 2))
+    z[10] += 500
+    z[11] = math.nan
+    z[20:] += 900
+    table = replace(XY, deviation=True)
+    tracks, rows = OpenTracks("maneuver", 2.0, table.outputs, Judge(Gate())), TrackRows(table)
+    piece, found = Piece.of(["a"] * 40, t, z), []
+    for begin, end in pairwise(cuts):
+        part = piece.take(np.arange(begin, end))
+        found.append(rows.values(part, tracks.advance(part).outputs))
+    values = {name: np.concatenate([part[name] for part in found]) for name in found[0]}
+    assert np.flatnonzero(values["coasted"]).tolist() == [10, 11, 20, 21, 22]
+    np.testing.assert_array_equal(values["since_last"][[9, 10, 11, 12, 22, 23]], [0, 1, 2, 0, 3, 0])
+    # Where it begins again its velocity is not known, and its position is that of the plot.
+    assert np.isnan(values["speed"]).nonzero()[0].tolist() == [0, 23]
+    assert values["x_sd"][23] == 2.0
+    assert (np.diff(values["x_sd"][19:23]) > 0).all()
