@@ -397,7 +397,7 @@ class Cleaner:
         turned = float(track[cleaning_step.TURNS] * self._clock[cleaning_step.PERIOD])
         fall = float(track[cleaning_step.TIME]) - (time + turned)
         if fall == 0:
-            what = _repeats(piece, place, before, bool(id))
+            what = _repeats(piece, place, before, id)
         else:
             what = (
                 f"is earlier than {self._show(time + fall)} in {before}; expected increasing times"
@@ -420,7 +420,7 @@ class Cleaner:
         return remedies
 
 
-def _repeats(piece: Piece, place: int, before: str, identified: bool) -> str:
+def _repeats(piece: Piece, place: int, before: str, id: str) -> str:
     """What is wrong with a time that equals the one before, and what to do."""
     cells, codes = piece.time_cells, piece.ids.codes
     earlier = np.flatnonzero(codes[:place] == codes[place])
@@ -431,8 +431,12 @@ def _repeats(piece: Piece, place: int, before: str, identified: bool) -> str:
                 f"in the cell {other} and {one} in {before} are too close to tell apart in double "
                 "precision; expected times further apart"
             )
-    # Several tracks in one file look like this when their identities are not read.
-    mend = "" if identified else "; if these are several tracks, name the column of their id (`id`)"
+    # Several tracks in one file look like this when their identities are not read, or not known.
+    mend = ""
+    if not id:
+        mend = "; if these are several tracks, name the column of their id (`id`)"
+    elif id == "-1":
+        mend = "; if the id -1 says that there is none, find out first which plot is of which track"
     return (
         f"repeats that of {before}; expected times that differ, or `duplicates` to say which plot "
         f"counts{mend}"

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.angles import unwrapped
 from fuzzytrack.io.cleaning import Cleaner
@@ -113,7 +114,7 @@ class PlotFiles:
         _check_alike(inputs, reading, {name: types[name] for name in columns.kinds}, origin)
         table = _first_table(inputs, reading, columns)
         decoder = _decoder(columns, description, table, units)
-        return cls(tuple(inputs), reading, decoder, _notes(names, columns, decoder.clock))
+        return cls(tuple(inputs), reading, decoder, _notes(names, columns, decoder.clock, table))
 
     @property
     def columns(self) -> Columns:
@@ -351,8 +352,9 @@ def _checked(name: str, value: float | str | None) -> float | str | None:
     return float(value)
 
 
-def _notes(names: tuple[str, ...], columns: Columns, clock: Clock) -> tuple[str, ...]:
+def _notes(names: tuple[str, ...], columns: Columns, clock: Clock, table: Table) -> tuple[str, ...]:
     notes = [clock.note] if clock.note else []
+    notes += filter(None, (_constant(table.numbers[name], name) for name in columns.read))
     free = looks_like_identity(names, columns)
     if free:
         notes.append(
@@ -360,6 +362,18 @@ def _notes(names: tuple[str, ...], columns: Columns, clock: Clock) -> tuple[str,
             "each"
         )
     return tuple(notes)
+
+
+# A column of position with fewer numbers than this may be constant by chance.
+_CONSTANT_FROM = 4
+
+
+def _constant(values: Array, name: str) -> str:
+    """Remark about a column of position that never changes: it may hold no position at all."""
+    known = values[np.isfinite(values)]
+    if len(known) < _CONSTANT_FROM or not (known == known[0]).all():
+        return ""
+    return f"column {name} is {known[0]:.15g} in all of the first {len(known)} plots that have it"
 
 
 def _check_alike(
