@@ -186,7 +186,7 @@ def test_picture_that_fails_leaves_nothing(fails, plots, tmp_path, monkeypatch):
 
 
 def test_interruption(run, plots, monkeypatch, tmp_path):
-    def interrupt(*args):
+    def interrupt(*args, **options):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(tracking, "track_recording", interrupt)
