@@ -118,6 +118,40 @@ class _Whole(io.RawIOBase):
         return len(part)
 
 
+class _Frames:
+    """Frames of Zstandard, one after the other; the last one must be complete.
+
+    A stream of the package ends where its bytes end, also in the middle of a number.
+    """
+
+    def __init__(self, raw: IO[bytes] | io.RawIOBase, decompressor: Any) -> None:
+        self._raw, self._decompressor = raw, decompressor
+        self._frame: Any = None
+        self._packed, self._unpacked, self._place = b"", b"", 0
+
+    def read(self, count: int) -> bytes:
+        """Read at most so many bytes; none at the end."""
+        while self._place >= len(self._unpacked):
+            packed = self._packed or self._raw.read(_PACKED)
+            if not packed:
+                if self._frame is not None:
+                    raise EOFError("the file ends before its last frame does")
+                return b""
+            if self._frame is None:
+                self._frame = self._decompressor.decompressobj()
+            self._unpacked, self._place = self._frame.decompress(packed), 0
+            self._packed = b""
+            if self._frame.eof:
+                self._packed, self._frame = self._frame.unused_data, None
+        part: bytes = self._unpacked[self._place : self._place + count]
+        self._place += len(part)
+        return part
+
+
+# Bytes that are decompressed at a time; they may become 30 000 times as many.
+_PACKED = 1024
+
+
 @contextmanager
 def open_bytes(file: str) -> Iterator[ByteStream]:
     """Open a file; what gzip or Zstandard has compressed is decompressed.
@@ -229,7 +263,7 @@ def _zstd(file: str, raw: Any) -> Any:
     except ImportError:
         pass
     else:
-        return zstandard.ZstdDecompressor().stream_reader(raw, read_across_frames=True)
+        return _Frames(raw, zstandard.ZstdDecompressor())
     try:
         import pyarrow
     except ImportError:

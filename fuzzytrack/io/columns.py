@@ -147,10 +147,12 @@ def choose_columns(
     position, read = _position(names, said, file, units or {})
     axes = _NAMES.get(position, read)[: len(read)]
     own = tuple(known(names, name, "own_ship", file) for name in said.own_ship or ())
-    heading = said.own_heading and known(names, said.own_heading, "own_heading", file)
+    turned = said.own_heading
+    heading = "" if turned is None else known(names, turned, "own_heading", file)
     noise = _noise_columns(names, said, file)
-    columns = Columns(time, id, axes, position, read, date, own, heading or "", noise)
-    every = [*filter(None, [date, time, id, heading]), *read, *own]
+    columns = Columns(time, id, axes, position, read, date, own, heading, noise)
+    _check_used(said, columns)
+    every = [*filter(None, [date, time, id, heading]), *read, *own, *noise]
     doubled = [name for name in every if every.count(name) > 1]
     if doubled:
         raise DataError(f"{file}: column {doubled[0]!r} cannot serve twice")
@@ -292,6 +294,52 @@ def _noise_columns(names: tuple[str, ...], said: PlotDescription, file: str) -> 
             continue
         found += [known(names, name, argument, file) for name in texts(value)]
     return tuple(dict.fromkeys(found))
+
+
+# -------------------------------------------------------------------- what does not fit together
+
+_POLAR_NOISE = ("sigma_range", "sigma_azimuth", "sigma_elevation")
+
+
+def _check_used(said: PlotDescription, columns: Columns) -> None:
+    """Refuse what would not be used: a word of the user's without an effect is a mistake."""
+    position, count = columns.position, len(columns.read)
+    for name in _POLAR_NOISE:
+        value = getattr(said, name)
+        if value is None:
+            continue
+        if position != "polar":
+            raise DataError(
+                f"`{name}`: is of polar plots; give `sigma`, or `polar` for the columns"
+            )
+        if said.sigma not in (None, "auto"):
+            raise DataError(f"`{name}`: `sigma` is given as well; give one of them")
+        if isinstance(value, tuple | list):
+            raise DataError(f"`{name}`: {len(value)} given; expected one number or column")
+    if said.sigma_elevation is not None and count < 3:
+        raise DataError("`sigma_elevation`: there is no elevation; name its column in `polar`")
+    if said.azimuth_from != "north" and position != "polar":
+        raise DataError("`azimuth_from`: is of polar plots; give `polar` for the columns")
+    if said.own_ship is not None:
+        if position not in ("polar", "cartesian"):
+            raise DataError(
+                f"`own_ship`: cannot carry {position} positions; give `polar` or `axes`"
+            )
+        if len(said.own_ship) not in (2, 3):
+            raise DataError(f"`own_ship`: {len(said.own_ship)} given; expected 2 or 3")
+    if said.own_heading is not None and position == "geodetic":
+        raise DataError("`own_heading`: cannot turn geodetic positions; give `polar`")
+    for argument in ("geodetic", "own_ship"):
+        names = getattr(said, argument) or ("",)
+        if _plain_is(names[0], _LONGITUDE):
+            raise DataError(
+                f"`{argument}`: {names[0]!r} is a longitude by its name; latitude comes first"
+            )
+    for name, *_ in said.valid:
+        if name not in columns.read:
+            raise DataError(
+                f"`valid`: {name!r} is no column of position{suggestion(name, columns.read)}"
+            )
 
 
 def looks_like_identity(names: Sequence[str], columns: Columns) -> str:

@@ -220,7 +220,8 @@ class PlotFiles:
                     found.unnamed += len(table.rows) - len(named.rows)
                     if len(named.rows):
                         piece = self.decoder.decode(named, found.impossible)
-                        farthest = max(farthest, _farthest(piece))
+                        if self.columns.position == "geodetic":
+                            farthest = max(farthest, _farthest(piece))
                         yield piece
                 found.note(getattr(source, "notes", ()))
             before += size
@@ -416,7 +417,7 @@ def _first_table(inputs: Sequence[Input], reading: Reading, columns: Columns) ->
 
 def _farthest(piece: Piece) -> float:
     """Distance in the plane of the plot that is farthest from the origin."""
-    distance = np.linalg.norm(piece.plots[:, :2], axis=1)
+    distance = np.hypot.reduce(piece.plots[:, :2], axis=1)
     return float(np.max(distance, initial=0.0, where=np.isfinite(distance)))
 
 

@@ -41,6 +41,8 @@ _UNIT_NAMES = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 # Counts (s) that are taken for times since 1970, from 1973 to 2242; counters begin at less.
 _DATES = (1e8, 2.0**33)
 _DAY = 86_400
+# Dates whose numbers differ by this factor are in different units, which differ by 1000.
+_OTHER_UNIT = 500
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,7 @@ class Clock:
         if unit is None:
             unit = next((word for least, word in _GUESSES if size >= least), "s")
             if unit != "s":
+                _check_one_unit(_first_number(first), size, name)
                 note = (
                     f"column {name or 'of time'}: numbers such as {first[0]} are taken as "
                     f"{_UNIT_NAMES[unit]} (`time_unit`)"
@@ -342,6 +345,15 @@ def _size(first: Any) -> float:
     """The usual magnitude of numbers; a few wrong ones do not change it."""
     sizes = sorted(map(abs, _numbers_in(first)))
     return sizes[len(sizes) // 2] if sizes else 0.0
+
+
+def _check_one_unit(first: float, usual: float, name: str) -> None:
+    """Check that the first number is not a date in another unit than most."""
+    if first >= _DATES[0] and usual > _OTHER_UNIT * first:
+        raise ValueError(
+            f"time_unit: column {name}: {first:.15g} and {usual:.15g} look like dates in different "
+            "units; convert one of them, or give the unit of all"
+        )
 
 
 def _first_number(first: Any) -> float:

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzytrack import DataError
-from fuzzytrack.io import csv_blocks
+from fuzzytrack.io import csv_blocks, read_tracks
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.text_form import MISSING, TextForm
 
@@ -347,3 +347,17 @@ def test_usual_blocks_are_parsed_at_once(tmp_path, monkeypatch):
     monkeypatch.setattr(csv_blocks, "_by_lines", None)
     for data in (PLAIN, "\ufeff" + PLAIN, gzip.compress(PLAIN.encode()), FORMS["semicolons"][0]):
         checked(written(tmp_path, data))
+
+
+def test_a_file_that_was_cut_short_is_no_shorter_recording(tmp_path):
+    zstandard = pytest.importorskip("zstandard")
+    plots = "t,x\n" + "".join(f"{k},{k * k % 97 + k / 7}\n" for k in range(100_000))
+    packed = zstandard.compress(plots.encode())
+    path = tmp_path / "f.csv.zst"
+    # Frames one after the other are one file.
+    path.write_bytes(packed + zstandard.compress(b"100000,1\n"))
+    assert len(read_tracks(path).tracks[0].time) == 100_001
+    for kept in (len(packed) // 2, len(packed) - 1):
+        path.write_bytes(packed[:kept])
+        with pytest.raises(DataError, match="cannot be decompressed: the file ends before"):
+            read_tracks(path)

@@ -389,3 +389,13 @@ def test_any_text_is_a_time_or_an_error_with_its_place(first, cells, at_first):
 @pytest.mark.parametrize("first", ["0", "1700000123"])
 def test_unusual_spellings_of_numbers(cell, first):
     assert seconds([first, cell], unit="s")[1] == float(cell) - float(first)
+
+
+def test_dates_in_two_units_are_refused():
+    seconds_first = [1_700_000_000 + k for k in range(5)]
+    milliseconds = [1000 * (1_700_000_005 + k) for k in range(9)]
+    with pytest.raises(ValueError, match=r"column t: 1700000000 and .* different units"):
+        Clock.of([*seconds_first, *milliseconds], name="t")
+    assert Clock.of([*seconds_first, *milliseconds], name="t", unit="ms").unit == "ms"
+    # A counter that begins small is none.
+    assert Clock.of([0, *milliseconds], name="t").unit == "ms"

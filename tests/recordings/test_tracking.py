@@ -156,3 +156,10 @@ def test_several_files_are_one_recording(plots, tmp_path):
     files = [tmp_path / "a.csv", tmp_path / "b.csv"]
     found, expected = ft.track(files, sigma=3.0), ft.track((t, z), sigma=3.0)
     np.testing.assert_array_equal(found.results[0].filtered, expected.results[0].filtered)
+
+
+@pytest.mark.filterwarnings("error")
+def test_numbers_beyond_any_use_are_counted_without_a_warning():
+    t = np.arange(20.0)
+    tracked = ft.track((t, np.stack([np.where(t % 2, 1e308, -1e308), t], axis=1)), sigma=1.0)
+    assert tracked.findings.cleaning.fills == 20
