@@ -23,8 +23,8 @@ _ORDER = 3
 #: Plots that follow another after less than this part of the track's median interval are left out:
 #: receivers that see the same pulse have the same error.
 _CLOSE = 0.05
-# Gaussian: median of the absolute value.
-_MEDIAN = 0.6744897501960817
+# Gaussian: median of the absolute value, and the limit of nine in ten.
+_MEDIAN, _NINE_TENTHS = 0.6744897501960817, 1.6448536269514722
 # Steps of a number, over the deviation of rounding to them.
 _ROUNDING = math.sqrt(12)
 # Differences of more deviations than this are spikes or maneuvers. What is left of a Gaussian
@@ -64,6 +64,10 @@ class NoiseEstimate:
     rounded : ndarray of bool, shape (n_axes,)
         Axes whose noise is smaller than the steps of the numbers in which the plots are given;
         their `sigma` is the deviation of such rounding, the step divided by the root of 12.
+    motion : ndarray, shape (n_axes,)
+        How much plots differ from a straight line through those before: the limit of nine in ten
+        second differences, as a deviation. About `sigma` where targets fly straight, and more where
+        they maneuver by more than the noise from plot to plot.
     """
 
     sigma: Array
@@ -73,6 +77,7 @@ class NoiseEstimate:
     differences: int
     axes_differ: bool
     rounded: Mask
+    motion: Array
 
     def __repr__(self) -> str:
         return summary(
@@ -152,6 +157,7 @@ def estimate_noise(time: ArrayLike, plots: ArrayLike, tracks: ArrayLike) -> Nois
         sum(axis.used for axis in axes),
         _differ(sigma, errors),
         np.array([axis.rounded for axis in axes]),
+        np.array([axis.motion for axis in axes]),
     )
 
 
@@ -170,6 +176,7 @@ class _Axis:
     sigma: float
     error: float
     used: int
+    motion: float
     rounded: bool = False
 
 
@@ -187,17 +194,19 @@ def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: int) -> _A
             "are needed. `sigma` gives it"
         )
     sigma, used = _deviation(chosen.values)
+    bends = _Differences.of(times[apart], plots[apart], codes[apart], 2).values
+    motion = float(np.quantile(np.abs(bends), 0.9)) / _NINE_TENTHS
     # Differences of plots without noise are those of rounding.
     nothing = 64 * float(np.finfo(np.float64).eps) * float(np.median(np.abs(plots)))
     if sigma <= nothing:
         grid = _grid(plots, nothing)
         _check_rounded(plots, grid, repeated, axis)
-        return _Axis(grid / _ROUNDING, grid / _ROUNDING, used, True)
+        return _Axis(grid / _ROUNDING, grid / _ROUNDING, used, motion, True)
     error = _relative_error(chosen, sigma)
     rounding = _grid(plots, _ROUNDING * sigma) / _ROUNDING
     if rounding > sigma:
-        return _Axis(rounding, error * rounding, used, True)
-    return _Axis(sigma, error * sigma, used)
+        return _Axis(rounding, error * rounding, used, motion, True)
+    return _Axis(sigma, error * sigma, used, motion)
 
 
 def _apart(times: Array, codes: NDArray[np.int64]) -> Mask:
@@ -270,7 +279,7 @@ class _Differences:
     Attributes
     ----------
     values : ndarray, shape (n,)
-    weights : ndarray, shape (4, n)
+    weights : ndarray, shape (order + 1, n)
         Of the plots.
     first : ndarray of int, shape (n,)
         Place of the first of its plots.
@@ -281,18 +290,20 @@ class _Differences:
     first: NDArray[np.intp]
 
     @classmethod
-    def of(cls, times: Array, plots: Array, codes: NDArray[np.int64]) -> _Differences:
+    def of(
+        cls, times: Array, plots: Array, codes: NDArray[np.int64], order: int = _ORDER
+    ) -> _Differences:
         """Differences of all runs of plots in one track; rows are in order of tracks."""
-        count = max(0, len(times) - _ORDER)
-        first = np.flatnonzero(codes[_ORDER:] == codes[:count])
-        runs = first + np.arange(_ORDER + 1)[:, None]
+        count = max(0, len(times) - order)
+        first = np.flatnonzero(codes[order:] == codes[:count])
+        runs = first + np.arange(order + 1)[:, None]
         # In parts of the run, so that no product is out of range; and about its second plot, since
         # large positions have no part in it.
         when = times[runs] - times[first]
         when /= when[-1].copy()
         weights = np.ones_like(when)
-        for one in range(_ORDER + 1):
-            for other in range(_ORDER + 1):
+        for one in range(order + 1):
+            for other in range(order + 1):
                 if one != other:
                     weights[one] *= when[one] - when[other]
         np.divide(1.0, weights, out=weights)

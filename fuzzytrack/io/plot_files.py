@@ -284,6 +284,8 @@ class PlotFiles:
         return replace(self, decoder=decoder, reading=replace(self.reading, cleaning=cleaning))
 
 
+# Noise of an axis, in parts of that of the axis with the largest.
+_LEAST_NOISE = 1e-3
 # A start waits until this part of the usual time between plots has passed.
 _LEAST_STEP = 0.1
 
@@ -297,7 +299,9 @@ def _estimate(
         units = [1.0, *(math.degrees(decoder.radians(k)) for k in range(1, count))]
         return (found.sigma * units).tolist(), (found.standard_error * units).tolist()
     if found.axes_differ:
-        return found.sigma.tolist(), found.standard_error.tolist()
+        # An axis on which nothing moves has the noise of its last digits, which no gate may take.
+        least = _LEAST_NOISE * found.sigma.max()
+        return np.maximum(found.sigma, least).tolist(), found.standard_error.tolist()
     return (found.pooled,) * count, (found.pooled_error,) * count
 
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.io.noise_estimate import NoiseEstimate
 from fuzzytrack.recordings.judge import Circle, Gate, Judge
 
 __all__ = ["GateWidth", "judge_of"]
@@ -13,7 +16,9 @@ __all__ = ["GateWidth", "judge_of"]
 GateWidth = float | Literal["auto"] | None
 
 
-def judge_of(decoder: PlotDecoder, gate: GateWidth = "auto") -> Judge | None:
+def judge_of(
+    decoder: PlotDecoder, gate: GateWidth = "auto", estimate: NoiseEstimate | None = None
+) -> Judge | None:
     """Judge for the plots of a recording.
 
     Parameters
@@ -22,6 +27,9 @@ def judge_of(decoder: PlotDecoder, gate: GateWidth = "auto") -> Judge | None:
         How the recording is read.
     gate : float, "auto" or None
         Width of the gate.
+    estimate : NoiseEstimate, optional
+        Where the noise was estimated: with "auto" the gate is as much wider as targets move more
+        than the noise from plot to plot.
 
     Returns
     -------
@@ -36,7 +44,14 @@ def judge_of(decoder: PlotDecoder, gate: GateWidth = "auto") -> Judge | None:
     circle = None if decoder.period is None else Circle(decoder.period)
     made = None
     if gate is not None and decoder.noise_is_known:
-        made = Gate() if gate == "auto" else Gate(gate)
+        made = Gate(Gate().width * _motion(estimate)) if gate == "auto" else Gate(gate)
     elif isinstance(gate, float | int):
         raise ValueError("gate: needs the noise of the plots; `sigma` gives it")
     return None if circle is None and made is None else Judge(made, circle)
+
+
+def _motion(estimate: NoiseEstimate | None) -> float:
+    """How much more than noise plots differ from straight lines, on any axis; 1 at least."""
+    if estimate is None:
+        return 1.0
+    return max(1.0, float(np.max(estimate.motion / estimate.sigma)))

@@ -111,7 +111,7 @@ def prepare(
     elif survey.missing:
         findings.note([survey.missing])
     made = _suited(chosen, files)
-    table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate)
+    table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate, survey.noise)
     return PreparedPlots(files, made, table, judge, findings)
 
 

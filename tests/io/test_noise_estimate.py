@@ -253,3 +253,15 @@ def test_shapes_that_do_not_fit():
         estimate_noise(np.arange(3), np.arange(3), np.zeros(3, dtype=int))
     with pytest.raises(ValueError, match=r"tracks: shape \(2,\) does not fit"):
         estimate_noise(np.arange(3), np.zeros((3, 1)), np.zeros(2, dtype=int))
+
+
+def test_motion_is_the_noise_of_what_flies_straight_and_more_of_what_turns():
+    rng = np.random.default_rng(8)
+    t, noise = np.arange(2000.0), rng.normal(size=(2000, 1))
+    straight = estimate_noise(t, 30 * t[:, None] + noise, np.zeros(2000, dtype=int))
+    np.testing.assert_allclose(straight.motion, 1, rtol=0.1)
+    turning = 500 * np.sin(t[:, None] / 5) + noise
+    found = estimate_noise(t, turning, np.zeros(2000, dtype=int))
+    # Second differences of the sine, as large as nine in ten of them are.
+    bend = 500 * 4 * np.sin(0.1) ** 2 / math.sqrt(6) * np.sin(0.45 * math.pi) / 1.645
+    np.testing.assert_allclose(found.motion, bend, rtol=0.1)

@@ -45,8 +45,8 @@ def test_a_drone_from_its_dates_latitudes_and_longitudes(real):
     with pytest.raises(ft.DataError, match="`geodetic`=latitude,longitude takes"):
         ft.track(path, time="time")
     # The noise of these places is centimeters, and the drone turns by meters between two of them.
-    raw = ft.track(path, time="time", geodetic=("latitude", "longitude"), gate=None)
-    derived = ft.track(real("uav_gps/uav_enu.csv"), gate=None)
+    raw = ft.track(path, time="time", geodetic=("latitude", "longitude"))
+    derived = ft.track(real("uav_gps/uav_enu.csv"))
     (one,), (other,) = raw.results, derived.results
     assert len(one.predicted) == 965
     assert np.array_equal(raw.recording.tracks[0].time, derived.recording.tracks[0].time)

@@ -163,3 +163,19 @@ def test_numbers_beyond_any_use_are_counted_without_a_warning():
     t = np.arange(20.0)
     tracked = ft.track((t, np.stack([np.where(t % 2, 1e308, -1e308), t], axis=1)), sigma=1.0)
     assert tracked.findings.cleaning.fills == 20
+
+
+def test_a_target_that_moves_by_more_than_its_noise_is_not_gated():
+    """As a drone with a positioning error of centimeters."""
+    rng = np.random.default_rng(9)
+    t = np.arange(400.0)
+    # Accelerations of up to 4 m/s² for 4 s each.
+    z = np.cumsum(np.cumsum(np.repeat(rng.uniform(-4, 4, (100, 2)), 4, axis=0), axis=0), axis=0)
+    z += 0.05 * rng.normal(size=z.shape)
+    tracked = ft.track((t, z))
+    sigma = tracked.recording.decoder.sigma
+    assert tracked.findings.rejected == 0
+    assert len(tracked) == 1
+    # What is told is taken as told.
+    assert ft.track((t, z), sigma=0.05).findings.rejected > 0
+    assert ft.track((t, z), sigma=sigma, gate=None).findings.rejected == 0
