@@ -138,7 +138,7 @@ def test_interrupted_process(tmp_path):
         # A process started in the background of a script ignores the signal.
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "from fuzzytrack.cli import main, track as tracking\n"
-        "tracking.track_recording = lambda *a: signal.raise_signal(signal.SIGINT)\n"
+        "tracking.track_recording = lambda *a, **k: signal.raise_signal(signal.SIGINT)\n"
         "import sys; sys.argv = ['fuzzytrack', 'track', 'a.csv']\n"
         "main()\n"
     )

@@ -118,7 +118,7 @@ def test_check_says_where(run, fails, typo):
 def test_check_names_the_file_of_any_mistake(fails, mine):
     text = mine.read_text().replace("universe: [0.25, 0.35", "universe: [-0.25, 0.35", 1)
     mine.write_text(text.replace("trimf: [0.25, 0.25, 0.28", "trimf: [-0.25, -0.25, 0.28", 1))
-    line = text.split("universe: [0.25, 0.35")[0].count("\n") + 1
+    line = text.split("universe: [-0.25, 0.35")[0].count("\n") + 1
     assert fails("rulebase", "check", mine).startswith(f"{mine}:{line}:")
 
 
