@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 import fuzzytrack as ft
-from fuzzytrack.cli.app import app
+from fuzzytrack.cli.app import app, load_command
 from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
@@ -98,14 +98,15 @@ def shown_commands(page):
 
 
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
-def test_commands_on_the_page_of_real_data_run(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("page", "number"), [("README.md", 1), ("docs/real-data.md", 10)])
+def test_commands_on_pages_about_files_run(page, number, tmp_path, monkeypatch):
     """Their files are those on the page; of the output, each line that is shown is there."""
-    page = ROOT / "docs" / "real-data.md"
+    page = ROOT / page
     monkeypatch.chdir(tmp_path)
     for name, text in shown_files(page):
         (tmp_path / name).write_text(text)
     commands = list(shown_commands(page))
-    assert len(commands) >= 10
+    assert len(commands) >= number
     runner = CliRunner()
     for words, expected in commands:
         program, *arguments = shlex.split(words)
@@ -116,6 +117,17 @@ def test_commands_on_the_page_of_real_data_run(tmp_path, monkeypatch):
         found = [line.split() for line in result.output.splitlines()]
         for line in expected:
             assert line.split() in found, f"{words}\n{line}\nis not in\n{result.output}"
+
+
+@pytest.mark.parametrize("name", ["demo", "track", "compare", "testbed", "tune", "simulate"])
+def test_the_page_of_commands_names_every_option(name):
+    page = (ROOT / "docs" / "cli.md").read_text()
+    section = re.search(rf"^## [^\n]*\b{name}\n(.*?)^## ", page + "\n## ", flags=re.M | re.S)
+    if section is None:
+        section = re.search(rf"^## {name}\b(.*?)^## ", page + "\n## ", flags=re.M | re.S)
+    options = [parameter.opts for parameter in load_command(name).params]
+    named = set(re.findall(r"(?<![\w-])--?\w[\w-]*", section.group(1)))
+    assert [names for names in options if names[0].startswith("-") and not named & {*names}] == []
 
 
 def test_there_is_something_to_run():
