@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,12 +15,13 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io.column_names import plain_name
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.description import PlotDescription
-from fuzzytrack.io.geodetic import LocalFrame
-from fuzzytrack.io.own_ship import relative_to_own_ship
 from fuzzytrack.io.piece import Piece
-from fuzzytrack.io.polar import ConvertedPlots, polar_to_cartesian
 from fuzzytrack.io.table import Cells, Table, Words
 from fuzzytrack.io.times import Clock
+
+if TYPE_CHECKING:
+    from fuzzytrack.io.geodetic import LocalFrame
+    from fuzzytrack.io.polar import ConvertedPlots
 
 __all__ = ["Noise", "PlotDecoder"]
 
@@ -165,13 +167,19 @@ class PlotDecoder:
         if position == "polar":
             plots = self._polar(table, measured)
             _count(lost, plots.impossible, "an impossible range or angle")
+        elif not self.columns.own_ship and not self.columns.own_heading:
+            return measured, self._sigma(table, measured)
         else:
+            from fuzzytrack.io.polar import ConvertedPlots
+
             plots = ConvertedPlots(measured, None, np.zeros(len(measured), dtype=bool))
         plots = self._about_origin(table, plots, lost)
         sigma = plots.sigma
         return plots.position, self._sigma(table, measured) if sigma is None else sigma
 
     def _polar(self, table: Table, measured: Array) -> ConvertedPlots:
+        from fuzzytrack.io.polar import polar_to_cartesian
+
         distance, azimuth, *elevation = measured.T
         noise = self._noise(table, measured) if self.noise_is_polar else None
         names = ("sigma_range", "sigma_azimuth", "sigma_elevation")
@@ -195,6 +203,8 @@ class PlotDecoder:
         names, heading = self.columns.own_ship, self.columns.own_heading
         if not names and not heading:
             return plots
+        from fuzzytrack.io.own_ship import relative_to_own_ship
+
         own = np.stack([table.numbers[name] for name in names], axis=1) if names else None
         moved = relative_to_own_ship(
             plots,

@@ -18,11 +18,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io import csv, parquet
-from fuzzytrack.io.ais import Ais
-from fuzzytrack.io.asterix import Asterix
 from fuzzytrack.io.files import PathLike, check_output, whole_file
-from fuzzytrack.io.gpx import Gpx
-from fuzzytrack.io.mot import Mot
 from fuzzytrack.io.readers import Reader, make_reader, reader_of, readers
 from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Kind, Table, Values, no_rows, silent
@@ -93,9 +89,8 @@ class ParquetReader(Reader):
         return parquet.open_source(file, self.form)
 
 
-_READERS: dict[str, type[Reader]] = {"ais": Ais, "asterix": Asterix, "gpx": Gpx, "mot": Mot}
-for _name, _reader in _READERS.items():
-    readers.register(_name)(_reader)
+for _reader in ("Ais", "Asterix", "Gpx", "Mot"):
+    readers.register_later(_reader.lower(), f"fuzzytrack.io.{_reader.lower()}:{_reader}")
 
 # Formats by the suffixes of the files that are written in them.
 _FORMATS: dict[tuple[str, ...], Format] = {PARQUET: parquet, (".csv", ".txt"): csv}

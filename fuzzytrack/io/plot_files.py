@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +20,6 @@ from fuzzytrack.io.decoder import Noise, PlotDecoder, joined_cells
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import open_table
-from fuzzytrack.io.geodetic import LocalFrame
 from fuzzytrack.io.noise_estimate import NoiseEstimate, estimate_noise
 from fuzzytrack.io.piece import Piece, joined
 from fuzzytrack.io.reading import Reading
@@ -28,6 +28,9 @@ from fuzzytrack.io.table import Table, no_rows
 from fuzzytrack.io.times import Clock
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
+
+if TYPE_CHECKING:
+    from fuzzytrack.io.geodetic import LocalFrame
 
 __all__ = ["ROWS", "Input", "PlotFiles", "Survey"]
 
@@ -313,6 +316,8 @@ def _decoder(
     clock = Clock.of(cells, unit=description.time_unit, name=columns.time, unit_of_name=unit)
     frame = None
     if description.site is not None:
+        from fuzzytrack.io.geodetic import LocalFrame
+
         frame = LocalFrame(*description.site)
     decoder = PlotDecoder(columns, description, clock, frame, _given_noise(columns, description))
     if frame is None and (columns.position == "geodetic" or decoder.own_ship_is_geodetic):
@@ -323,6 +328,8 @@ def _decoder(
 
 def _frame_at_first(table: Table, names: Sequence[str]) -> LocalFrame:
     """Frame about the first position that is one."""
+    from fuzzytrack.io.geodetic import LocalFrame
+
     places = np.stack([table.numbers[name] for name in names], axis=1)
     good = (np.abs(places[:, 0]) <= 90) & (np.abs(places[:, 1]) <= 180)
     if not good.any():

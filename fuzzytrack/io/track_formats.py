@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.io import czml, geojson, gpx, kml
 from fuzzytrack.io.files import PathLike, check_output, whole_file
-from fuzzytrack.io.geo_track import GeoTrack
+
+if TYPE_CHECKING:
+    from fuzzytrack.io.geo_track import GeoTrack
 
 __all__ = ["TRACK_SUFFIXES", "TrackFormat", "check_geo_tracks", "is_geo", "write_geo_tracks"]
 
@@ -21,8 +23,8 @@ class TrackFormat(Protocol):
         """Write a file that does not exist yet, track by track."""
 
 
-# Formats by the suffixes of the files that are written in them.
-_FORMATS: dict[str, TrackFormat] = {".geojson": geojson, ".kml": kml, ".czml": czml, ".gpx": gpx}
+# The modules of this package that write the formats, by suffix; each is imported when it is used.
+_FORMATS = {".geojson": "geojson", ".kml": "kml", ".czml": "czml", ".gpx": "gpx"}
 
 # Those in which every position has a date and time.
 _DATED = {".kml": "KML", ".czml": "CZML"}
@@ -124,7 +126,8 @@ def write_geo_tracks(
     check_geo_tracks(path, inputs)
     suffix = Path(path).suffix.lower()
     with whole_file(path, inputs) as draft:
-        _FORMATS[suffix].write(draft, tracks, Path(path).stem if name is None else name)
+        format: TrackFormat = import_module(f"fuzzytrack.io.{_FORMATS[suffix]}")
+        format.write(draft, tracks, Path(path).stem if name is None else name)
 
 
 def _listed() -> str:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
-from importlib.metadata import EntryPoint, entry_points
+from functools import cache, cached_property
+from importlib import metadata
+from importlib.metadata import EntryPoint
 from typing import Any, Generic, TypeVar
 
 from fuzzytrack.errors import PluginWarning
@@ -77,6 +78,8 @@ class Registry(Generic[T]):
         self.group = group
         self.base = base
         self._local: dict[str, Plugin] = {}
+        # Factories of this package that are imported when they are asked for.
+        self._own: dict[str, EntryPoint] = {}
         # Of an installed plug-in that cannot be loaded, the reason.
         self._loaded: dict[str, Plugin | str] = {}
         self._reported: set[str] = set()
@@ -107,7 +110,7 @@ class Registry(Generic[T]):
 
         def decorate(factory: T) -> T:
             self._check(name, factory)
-            taken = self._local.get(name)
+            taken = self._local.get(name) or self._own_plugin(name)
             plugin = Plugin(name, factory, _script(factory) or _module(factory).partition(".")[0])
             if taken is not None and not _same(taken.factory, factory):
                 if not (_script(factory) and _script(taken.factory)):
@@ -121,6 +124,18 @@ class Registry(Generic[T]):
 
         return decorate
 
+    def register_later(self, name: str, place: str) -> None:
+        """Register a factory of this package that is imported when it is asked for.
+
+        Parameters
+        ----------
+        name : str
+            Name by which users ask for it.
+        place : str
+            Its module and name, as ``package.module:name``.
+        """
+        self._own[name] = EntryPoint(name, place, self.group)
+
     def unregister(self, name: str) -> None:
         """Forget a factory registered in this process."""
         del self._local[name]
@@ -131,21 +146,25 @@ class Registry(Generic[T]):
             if isinstance(problem, str) and problem not in self._reported:
                 self._reported.add(problem)
                 _warn(f"{problem}; it is skipped")
-        everything = {**installed, **self._local}
+        own = {name: self._own_plugin(name) for name in self._own}
+        everything = {**installed, **own, **self._local}
         found = [plugin for plugin in everything.values() if isinstance(plugin, Plugin)]
         return iter(sorted(found, key=lambda plugin: plugin.name))
 
     def names(self) -> tuple[str, ...]:
         """Names of all plug-ins, sorted; no installed plug-in is loaded for it."""
-        return tuple(sorted({**self._installed, **self._local}))
+        return tuple(sorted({**self._installed, **self._own, **self._local}))
 
     def built_in(self) -> tuple[str, ...]:
         """Names of the plug-ins that are part of fuzzytrack."""
-        return tuple(name for name, plugin in self._local.items() if plugin.built_in)
+        local = (name for name, plugin in self._local.items() if plugin.built_in)
+        return (*local, *self._own)
 
     def package(self, name: str) -> str:
         """Package that offers a name; no installed plug-in is loaded for it."""
-        return self._local[name].package if name in self._local else _package(self._installed[name])
+        if name in self._local:
+            return self._local[name].package
+        return _package(self._own.get(name) or self._installed[name])
 
     def get(self, name: str) -> Any:
         """Factory by name; no other plug-in is loaded for it.
@@ -157,10 +176,17 @@ class Registry(Generic[T]):
         """
         if name not in self.names():
             raise ValueError(f"unknown {self.kind} {name!r}; one of {', '.join(self.names())}")
-        found = self._local.get(name) or self._load(self._installed[name])
+        own = self._local.get(name) or self._own_plugin(name)
+        found = own or self._load(self._installed[name])
         if isinstance(found, str):
             raise ValueError(found)
         return found.factory
+
+    def _own_plugin(self, name: str) -> Plugin | None:
+        """Plug-in of this package that is registered for later, if there is one of that name."""
+        if name not in self._own:
+            return None
+        return Plugin(name, self._own[name].load(), "fuzzytrack")
 
     @cached_property
     def _installed(self) -> dict[str, EntryPoint]:
@@ -202,6 +228,18 @@ class Registry(Generic[T]):
                 f"{self.kind} {name!r} must be a {self.base.__name__} class, or a function that "
                 f"makes a {self.base.__name__}, got {factory!r}"
             )
+
+
+def entry_points(group: str) -> Iterable[EntryPoint]:
+    """What installed packages offer in a group; all packages are looked through once."""
+    found: Iterable[EntryPoint] = _every_entry_point().select(group=group)
+    return found
+
+
+@cache
+def _every_entry_point() -> Any:
+    # Of a class that depends on the version of Python; all have `select`.
+    return metadata.entry_points()
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,15 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io import motion
 from fuzzytrack.io.angles import wrapped
 from fuzzytrack.io.decoder import PlotDecoder
-from fuzzytrack.io.geodetic import LocalFrame
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.time_cells import numbers
 from fuzzytrack.recordings.last_plots import LastPlots
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.result import velocity_over_ground
+
+if TYPE_CHECKING:
+    from fuzzytrack.io.geodetic import LocalFrame
 
 __all__ = ["TrackRows", "TrackTable"]
 

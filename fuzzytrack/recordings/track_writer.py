@@ -17,7 +17,6 @@ from fuzzytrack.io.piece import Piece, joined_cells
 from fuzzytrack.io.recording import Recording
 from fuzzytrack.io.table import Words
 from fuzzytrack.io.track_formats import check_geo_tracks, is_geo, write_geo_tracks
-from fuzzytrack.recordings.geo_rows import GeoRows
 from fuzzytrack.recordings.track_table import TrackRows, TrackTable
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.result import TrackResult
@@ -103,6 +102,8 @@ def track_writer(
     """
     check_tracks(path, table, inputs)
     if is_geo(path):
+        from fuzzytrack.recordings.geo_rows import GeoRows
+
         rows = GeoRows(table)
         yield rows.add
         write_geo_tracks(path, rows.tracks(), inputs)

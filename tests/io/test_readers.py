@@ -43,7 +43,7 @@ def installed(monkeypatch):
         found = [EntryPoint(name, value, "fuzzytrack.readers") for name, value in points.items()]
         monkeypatch.setattr(registry, "entry_points", lambda group: found)
         fresh = Registry("reader", "fuzzytrack.readers", Reader)
-        fresh._local = dict(readers._local)
+        fresh._local, fresh._own = dict(readers._local), dict(readers._own)
         monkeypatch.setattr("fuzzytrack.io.readers.readers", fresh)
 
     return install
