@@ -109,15 +109,13 @@ def track(
     """
     options.load_plugins(plugin)
     width = number_or(gate, "--gate", {"auto": "auto", "none": None})
-    chosen = make_tracker(DEFAULT_TRACKER if tracker is None else tracker)
     apart = scheduler is not None or jobs > 1
-    large = len(files) == 1 and _is_large(files[0]) and isinstance(chosen, LaneTracker)
+    large = len(files) == 1 and _is_large(files[0]) and _goes_on(tracker)
     in_pieces = apart or chunk_rows is not None or any(map(os.path.isdir, files)) or len(files) > 1
     if in_pieces or (large and not (reading.sort or plot)):
         from fuzzytrack.recordings.large_jobs import LargeJob
 
         _check_pieces(reading.sort, plot)
-        as_lane_tracker(chosen)
         folder = _folder(output) if apart else ""
         prepared = prepare(files, tracker, reading, width)
         made = as_lane_tracker(prepared.tracker)
@@ -145,6 +143,11 @@ def track(
     _print_table(run)
     for written in filter(None, (output, plot)):
         say(f"wrote {written}")
+
+
+def _goes_on(tracker: str | None) -> bool:
+    """Whether a tracker can continue from piece to piece."""
+    return tracker is None or isinstance(make_tracker(tracker), LaneTracker)
 
 
 def _is_large(file: str) -> bool:

@@ -102,6 +102,8 @@ def prepare(
     DataError, ValueError, OSError
         As `track`.
     """
+    # First, since a tracker that cannot be made needs no files.
+    made = None if tracker is None else as_tracker(tracker)
     files, survey = PlotFiles.of(inputs_of(plots), reading).surveyed()
     findings = Findings()
     chosen = DEFAULT_TRACKER if tracker is None else tracker
@@ -110,14 +112,13 @@ def prepare(
         findings.note([f"{survey.missing}. Tracked with {chosen}: {DEFAULT_TRACKER} needs it"])
     elif survey.missing:
         findings.note([survey.missing])
-    made = _suited(chosen, files)
+    made = _suited(chosen, as_tracker(chosen) if made is None else made, files)
     table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate, survey.noise)
     return PreparedPlots(files, made, table, judge, findings)
 
 
-def _suited(tracker: Tracker | str, files: PlotFiles) -> Tracker:
+def _suited(tracker: Tracker | str, made: Tracker, files: PlotFiles) -> Tracker:
     """The tracker; where axes have different noise, and it can, with a covariance for each axis."""
-    made = as_tracker(tracker)
     decoder = files.decoder
     differ = isinstance(decoder.sigma, tuple) or decoder.noise_is_polar
     scheduler = made.scheduler if isinstance(made, AlphaBetaTracker) else None

@@ -151,7 +151,7 @@ def test_a_tracker_without_states(fails, folder, monkeypatch):
 
         start = step = predict = run
 
-    from fuzzytrack.cli import track as tracking
+    from fuzzytrack.trackers import catalog
 
-    monkeypatch.setattr(tracking, "make_tracker", lambda name: Whole())
+    monkeypatch.setattr(catalog, "make_tracker", lambda name: Whole())
     assert "Whole cannot go on from piece to piece" in fails("track", folder)
