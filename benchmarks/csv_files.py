@@ -134,10 +134,10 @@ def measure(name: str, path: str) -> dict[str, float]:
     started, cpu = time.perf_counter(), time.process_time()
     rows = reader(path)
     seconds, cpu_seconds = time.perf_counter() - started, time.process_time() - cpu
-    return {"rows": rows, "seconds": seconds, "cpu": cpu_seconds, "peak": _peak()}
+    return {"rows": rows, "seconds": seconds, "cpu": cpu_seconds, "peak": peak()}
 
 
-def _peak() -> float:
+def peak() -> float:
     """Peak memory of this process (MiB)."""
     status = Path("/proc/self/status")
     if status.exists():
