@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,13 +30,18 @@ class FrameSource:
     Raises
     ------
     DataError
-        If their lengths differ, or there are none.
+        If their lengths differ, there are none, or one has more than one value a row.
     """
 
     def __init__(self, columns: Mapping[str, Any], file: str = "plots") -> None:
         self.file = file
+        names = _checked_names(columns, file)
         self._columns = {str(name): _array(values) for name, values in columns.items()}
-        names = checked_names(list(self._columns), file)
+        for name, values in self._columns.items():
+            if values.ndim != 1:
+                raise DataError(
+                    f"{file}: column {name!r}: shape {values.shape}; expected one value a row"
+                )
         self.types = {name: str(self._columns[name].dtype) for name in names}
         lengths = {name: len(values) for name, values in self._columns.items()}
         if len(set(lengths.values())) > 1:
@@ -69,8 +74,10 @@ class FrameSource:
         if isinstance(data, tuple) and len(data) == 2:
             return cls(_of_arrays(*data))
         if hasattr(data, "column_names") and hasattr(data, "column"):  # a table of Arrow
+            _checked_names(data.column_names, "plots")
             return cls({name: data.column(name).to_numpy() for name in data.column_names})
         if hasattr(data, "columns") and hasattr(data, "__getitem__"):
+            _checked_names(data.columns, "plots")
             return cls({name: data[name] for name in data.columns})
         raise TypeError(
             "plots must be a file, a folder, a data frame, a mapping from names to columns, or "
@@ -101,9 +108,19 @@ def _array(values: Any) -> NDArray[Any]:
 
 
 def _unmasked(values: Any) -> NDArray[Any]:
-    """Numbers, NaN where they are masked."""
-    filled: NDArray[Any] = np.ma.filled(values.astype(np.float64), np.nan)
-    return filled
+    """Values, with none where they are masked; whole numbers stay exact."""
+    if not np.ma.getmaskarray(values).any():
+        return np.asarray(values.data)
+    nothing: Any = {"f": np.nan, "M": "NaT", "m": "NaT"}.get(values.dtype.kind)
+    whole = values if nothing is not None else values.astype(object)
+    return np.asarray(np.ma.filled(whole, nothing))
+
+
+def _checked_names(names: Iterable[Any], file: str) -> list[str]:
+    words = [str(name) for name in names]
+    if not words:
+        raise DataError(f"{file}: holds no columns")
+    return list(checked_names(words, file))
 
 
 def _of_arrays(time: Any, plots: Any) -> dict[str, Any]:

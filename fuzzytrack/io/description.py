@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
+
+import numpy as np
 
 from fuzzytrack.yamltree import suggestion
 
@@ -16,6 +18,7 @@ Azimuth = Literal["north", "east"]
 
 # Fields that say where the positions are; a recording has one of them.
 _POSITIONS = ("axes", "polar", "geodetic", "angle")
+_POLAR_NOISE = ("sigma_range", "sigma_azimuth", "sigma_elevation")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +63,8 @@ class PlotDescription:
     sigma_range, sigma_azimuth, sigma_elevation : float or str, optional
         Standard deviations of polar plots (m, deg, deg), or the columns that have them.
     valid : tuple of (str, float, float)
-        Columns and the least and greatest value that is a position; others are missed plots.
+        Columns and the least and greatest value that is a position; others are missed plots. A
+        mapping from columns to pairs will do.
 
     Raises
     ------
@@ -88,13 +92,17 @@ class PlotDescription:
     valid: tuple[tuple[str, float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("axes", "polar", "geodetic", "site", "own_ship"):
+        for name, normal in (
+            *((name, _one_name) for name in ("id", "angle", "own_heading")),
+            *((name, _names) for name in ("axes", "polar", "geodetic", "own_ship")),
+            ("time", _time_names),
+            ("site", _place),
+            *((name, _noise) for name in ("sigma", *_POLAR_NOISE)),
+            ("valid", _ranges),
+        ):
             value = getattr(self, name)
             if value is not None:
-                object.__setattr__(self, name, tuple(value))
-        for name in ("time", "sigma"):
-            if isinstance(getattr(self, name), list):
-                object.__setattr__(self, name, tuple(getattr(self, name)))
+                object.__setattr__(self, name, normal(name, value))
         for name, allowed in (("time_unit", TimeUnit), ("azimuth_from", Azimuth)):
             value = getattr(self, name)
             if value is not None and value not in get_args(allowed):
@@ -129,6 +137,72 @@ class PlotDescription:
         if any(name in said for name in _POSITIONS):
             other = replace(other, axes=None, polar=None, geodetic=None, angle=None)
         return replace(other, **said)
+
+
+def _one_name(argument: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{argument}: must be the name of a column, got {value!r}")
+
+
+def _names(argument: str, value: Any) -> tuple[str, ...]:
+    """Names of columns; one text is one name, and not its letters."""
+    if isinstance(value, str):
+        return (value,)
+    if isinstance(value, Iterable):
+        return tuple(_one_name(argument, name) for name in value)
+    raise ValueError(f"{argument}: must be names of columns, got {value!r}")
+
+
+def _time_names(argument: str, value: Any) -> str | tuple[str, ...]:
+    names = _names(argument, value)
+    if len(names) not in (1, 2):
+        raise ValueError(
+            f"{argument}: {len(names)} given; expected a column, or those of date, time"
+        )
+    return names[0] if len(names) == 1 else names
+
+
+def _place(argument: str, value: Any) -> tuple[float, ...]:
+    try:
+        if not isinstance(value, str):
+            return tuple(float(number) for number in value)
+    except (TypeError, ValueError):
+        pass
+    raise ValueError(f"{argument}: must be latitude, longitude and maybe altitude, got {value!r}")
+
+
+def _noise(argument: str, value: Any) -> float | str | tuple[float | str, ...]:
+    """Numbers and names, also from arrays of numpy and their elements."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return tuple(_one_noise(argument, each) for each in value)
+    return _one_noise(argument, value)
+
+
+def _one_noise(argument: str, value: Any) -> float | str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
+        return float(value)
+    raise ValueError(f"{argument}: must be numbers or names of columns, got {value!r}")
+
+
+def _ranges(argument: str, value: Any) -> tuple[tuple[str, float, float], ...]:
+    found = []
+    pairs = [(k, *v) for k, v in value.items()] if isinstance(value, Mapping) else value
+    try:
+        for name, least, most in pairs:
+            found.append((_one_name(argument, name), float(least), float(most)))
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"{argument}: must be columns, each with its least and greatest value, got {value!r}"
+        ) from None
+    for name, low, high in found:
+        if not low <= high:
+            raise ValueError(f"{argument}: {name} from {low:g} to {high:g}; expected low to high")
+    return tuple(found)
 
 
 def texts(value: float | str | Sequence[float | str] | None) -> tuple[str, ...]:

@@ -104,11 +104,13 @@ class PlotFiles:
         ------
         DataError
             If a column is missing or could be meant in two ways, its type differs between files, or
-            there are no rows.
+            there are no rows or no files.
         OSError
             If a file cannot be read.
         """
         reading = reading or Reading()
+        if not inputs:
+            raise DataError("plots: no file is given; expected at least one")
         with _opened(inputs[0], reading) as source:
             description = reading.description.over(getattr(source, "description", None))
             names, types = tuple(source.types), dict(source.types)

@@ -64,6 +64,8 @@ class Reading:
             parts[name] = part(**mine)
         own = {key: options.pop(key) for key in ("format", "sort") if key in options}
         _check_all_used(options)
+        if not isinstance(own.get("format"), str | None):
+            raise ValueError(f"format: must be the name of a format, got {own['format']!r}")
         return cls(**parts, **own)
 
 

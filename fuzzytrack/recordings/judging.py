@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -39,13 +40,18 @@ def judge_of(
     Raises
     ------
     ValueError
-        If a width is given, and the noise of the plots is not known.
+        If a width is none, or one is given and the noise of the plots is not known.
     """
+    if isinstance(gate, bool) or not isinstance(gate, float | int | np.number | None):
+        if gate != "auto":
+            raise ValueError(f"gate: must be a number > 0, 'auto' or None, got {gate!r}")
+    elif gate is not None and not 0 < gate < math.inf:
+        raise ValueError(f"gate: must be a finite number > 0, got {gate:g}")
     circle = None if decoder.period is None else Circle(decoder.period)
     made = None
     if gate is not None and decoder.noise_is_known:
-        made = Gate(Gate().width * _motion(estimate)) if gate == "auto" else Gate(gate)
-    elif isinstance(gate, float | int):
+        made = Gate(Gate().width * _motion(estimate)) if gate == "auto" else Gate(float(gate))
+    elif gate not in (None, "auto"):
         raise ValueError("gate: needs the noise of the plots; `sigma` gives it")
     return None if circle is None and made is None else Judge(made, circle)
 

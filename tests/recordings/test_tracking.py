@@ -179,3 +179,43 @@ def test_a_target_that_moves_by_more_than_its_noise_is_not_gated():
     # What is told is taken as told.
     assert ft.track((t, z), sigma=0.05).findings.rejected > 0
     assert ft.track((t, z), sigma=sigma, gate=None).findings.rejected == 0
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ([], "no file is given"),
+        ({}, "holds no columns"),
+        ({"t": 1.0, "x": 2.0}, "column 't': shape \\(\\); expected one value a row"),
+    ],
+)
+def test_plots_that_are_none(given, message):
+    with pytest.raises(ft.DataError, match=message):
+        ft.track(given)
+
+
+def test_a_frame_with_two_columns_of_one_name():
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame([[0.0, 1.0, 2.0]], columns=["t", "x", "x"])
+    with pytest.raises(ft.DataError, match="two columns are called 'x'"):
+        ft.track(frame)
+
+
+@pytest.mark.parametrize("gate", ["x", math.nan, -1, math.inf, True])
+def test_a_gate_of_another_kind_is_named(plots, gate):
+    with pytest.raises(ValueError, match="gate: must be a "):
+        ft.track(plots, gate=gate)
+
+
+def test_a_format_of_another_kind_is_named(plots):
+    with pytest.raises(ValueError, match="format: must be the name of a format, got 3"):
+        ft.track(plots, format=3)
+
+
+def test_masked_whole_numbers_stay_exact():
+    first = 1_700_000_000_000_000_000
+    time = np.ma.masked_array(first + np.arange(5) * 7, mask=False)
+    x = np.ma.masked_array(np.arange(5.0), mask=[0, 0, 1, 0, 0])
+    tracked = ft.track({"t_ns": time, "x": x}, "stiffness-damping", sigma=1.0, least_step=1e-9)
+    assert np.diff(tracked.recording.tracks[0].time).tolist() == pytest.approx([7e-9] * 4)
+    assert tracked.totals.missed == 1
