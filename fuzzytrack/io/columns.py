@@ -335,6 +335,8 @@ def _check_used(said: PlotDescription, columns: Columns) -> None:
             raise DataError(
                 f"`{argument}`: {names[0]!r} is a longitude by its name; latitude comes first"
             )
+    if said.polar is not None and _plain_is(said.polar[0], _POLAR):
+        raise DataError(f"`polar`: {said.polar[0]!r} is an angle by its name; range comes first")
     for name, *_ in said.valid:
         if name not in columns.read:
             raise DataError(

@@ -23,7 +23,7 @@ __all__ = ["Circle", "Gate", "Judge", "JudgeMemory", "Verdict"]
 class Gate:
     """Plots too far from the prediction are not used.
 
-    A plot is rejected, all of its axes, if its innovation on one of them exceeds
+    A plot is rejected, all of its axes, if its innovation on one of them exceeds::
 
         width · σ · max(1, dt / 2T)² + |e|
 

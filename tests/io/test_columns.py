@@ -34,6 +34,7 @@ def test_bad_columns(tmp_path, columns, message):
         ({"sigma_range": 1.0, "sigma": 2.0, "polar": ("r", "az")}, "`sigma` is given as well"),
         ({"azimuth_from": "east"}, "`azimuth_from`: is of polar plots"),
         ({"geodetic": ("lon", "lat")}, "`geodetic`: 'lon' is a longitude by its name"),
+        ({"polar": ("az", "r")}, "`polar`: 'az' is an angle by its name; range comes first"),
         ({"own_ship": ("lon", "lat"), "polar": ("r", "az")}, "'lon' is a longitude by its name"),
         ({"own_ship": ("lon",), "polar": ("r", "az")}, "`own_ship`: 1 given"),
         ({"own_ship": ("x", "y"), "geodetic": ("lat", "lon")}, "cannot carry geodetic"),
