@@ -3,7 +3,7 @@ from data_files import written
 
 from fuzzytrack import DataError
 from fuzzytrack.io import read_tracks
-from fuzzytrack.io.columns import choose_columns
+from fuzzytrack.io.columns import choose_columns, looks_like_identity
 from fuzzytrack.io.description import PlotDescription
 
 
@@ -48,3 +48,66 @@ def test_what_would_have_no_effect_is_refused(options, message):
     names = ("t", "x", "y", "r", "az", "lat", "lon")
     with pytest.raises(DataError, match=message):
         choose_columns(names, "f.csv", PlotDescription(**options))
+
+
+@pytest.mark.parametrize(
+    ("names", "options", "message"),
+    [
+        (("t", "time", "x"), {}, "columns 't' and 'time' could all be the time; name one of them"),
+        (("when", "x"), {}, "no column t, time or timestamp; .*; there are when, x"),
+        (("t", "x", "x_m"), {}, "columns 'x' and 'x_m' could all be x; name those of position"),
+        (("t", "x_km", "y_km"), {}, "column 'x_km' is in km; expected meters"),
+        (("t", "a", "b"), {}, "no columns x, y or x_m, y_m; .*; there are t, a, b"),
+        (("t", "lat", "lon"), {}, "no columns x, y; `geodetic`=lat,lon takes latitude"),
+        (("t", "range", "azimuth"), {}, "no columns x, y; `polar`=range,azimuth takes range"),
+        (("t", "bearing"), {}, "no columns x, y; `angle`=bearing takes a bare angle"),
+        (("t", "bearing"), {"axes": ("bearing",)}, "is an angle by its name; `angle`=bearing"),
+        (("t", "cog", "x"), {"axes": ("x", "cog")}, "'cog' is an angle.*`angle`=cog"),
+        (("t", "lat", "lon"), {"axes": ("lon", "lat")}, "angle by its name; `geodetic`=lat,lon"),
+        (("t", "lat"), {"axes": ("lat", "t")}, "`angle`=lat takes it as an angle"),
+    ],
+)
+def test_what_could_be_meant_is_told(names, options, message):
+    with pytest.raises(DataError, match=message):
+        choose_columns(names, "f.csv", PlotDescription(**options))
+
+
+def test_units_of_the_file_go_before_those_of_the_names():
+    names = ("t", "x", "y")
+    assert choose_columns(names, "f.csv").axes == ("x", "y")
+    with pytest.raises(DataError, match="column 'y' is in km"):
+        choose_columns(names, "f.csv", units={"y": "km"})
+
+
+def test_angles_are_axes_for_those_who_say_so():
+    said = PlotDescription(axes=("lat", "lon"), cartesian=True)
+    columns = choose_columns(("t", "lat", "lon"), "f.csv", said)
+    assert (columns.position, columns.axes) == ("cartesian", ("lat", "lon"))
+
+
+def test_names_in_other_letters_are_found():
+    said = PlotDescription(time="TIME", id="Id", axes=("X",))
+    columns = choose_columns(("time", "ID", "x"), "f.csv", said)
+    assert (columns.time, columns.id, columns.axes) == ("time", "ID", ("x",))
+
+
+def test_columns_in_words():
+    said = PlotDescription(
+        time=("day", "clock"), polar=("r", "az"), own_ship=("ox", "oy"), own_heading="h",
+        sigma_range="sr", sigma_azimuth=1.0,
+    )  # fmt: skip
+    names = ("day", "clock", "r", "az", "ox", "oy", "h", "sr")
+    columns = choose_columns(names, "f.csv", said)
+    assert columns.sentence == (
+        "time day and clock; no id: one track; position r, az (polar); own ship ox, oy; "
+        "own heading h; sigma sr"
+    )
+    assert set(columns.kinds) == set(names)
+
+
+def test_a_column_that_looks_like_an_identity():
+    columns = choose_columns(("t", "x", "MMSI"), "f.csv")
+    assert looks_like_identity(("t", "x", "MMSI"), columns) == "MMSI"
+    assert looks_like_identity(("t", "x"), columns) == ""
+    with_id = choose_columns(("t", "x", "MMSI"), "f.csv", PlotDescription(id="MMSI"))
+    assert looks_like_identity(("t", "x", "MMSI"), with_id) == ""
