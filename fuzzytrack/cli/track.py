@@ -19,6 +19,7 @@ from fuzzytrack.cli.output import (
     show,
     with_error,
 )
+from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.cli.plot_options import number_or, reads_plots
 from fuzzytrack.io.decoder import PlotDecoder
@@ -76,8 +77,8 @@ def track(
         typer.Option(
             "--output",
             "-o",
-            metavar="OUT.csv|DIR",
-            help="Write the tracks (or .parquet; .geojson, .kml, .czml or .gpx).",
+            metavar="OUT.csv|DIR|-",
+            help="Write the tracks (or .parquet; .geojson, .kml, .czml or .gpx); - prints CSV.",
         ),
     ] = None,
     quote_formulas: Annotated[
@@ -112,37 +113,42 @@ def track(
     apart = scheduler is not None or jobs > 1
     large = len(files) == 1 and _is_large(files[0]) and _goes_on(tracker)
     in_pieces = apart or chunk_rows is not None or any(map(os.path.isdir, files)) or len(files) > 1
-    if in_pieces or (large and not (reading.sort or plot)):
-        from fuzzytrack.recordings.large_jobs import LargeJob
+    if output == STANDARD_OUTPUT and json:
+        raise ValueError("--json: -o - writes the tracks to standard output; name a file")
+    with output_file(output) as place:
+        if in_pieces or (large and not (reading.sort or plot)):
+            from fuzzytrack.recordings.large_jobs import LargeJob
 
-        _check_pieces(reading.sort, plot)
-        folder = _folder(output) if apart else ""
-        prepared = prepare(files, tracker, reading, width)
-        made = as_lane_tracker(prepared.tracker)
-        job = LargeJob(prepared.files, made, chunk_rows or ROWS, prepared.judge)
-        with progress("tracking") as watch:
-            if apart:
-                totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
-            else:
-                totals = job.track(output, watch, quote_formulas=quote_formulas)
-        run = _Run.of(prepared, totals)
-    else:
-        _look_ahead(files[0], output, plot)
-        with progress("tracking") as watch:
-            tracked = track_recording(files[0], tracker, reading, watch, output, gate=width)
-        if output is not None:
-            with progress("writing") as watch:
-                tracked.write(output, watch, quote_formulas=quote_formulas)
-        if plot is not None:
-            save_picture(plot, tracked.plot, (files[0],))
-        run = _Run.whole(tracked, listed=_LISTED if not json else len(tracked))
+            _check_pieces(reading.sort, plot)
+            folder = _folder(output) if apart else ""
+            prepared = prepare(files, tracker, reading, width)
+            made = as_lane_tracker(prepared.tracker)
+            job = LargeJob(prepared.files, made, chunk_rows or ROWS, prepared.judge)
+            with progress("tracking") as watch:
+                if apart:
+                    totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
+                else:
+                    totals = job.track(place, watch, quote_formulas=quote_formulas)
+            run = _Run.of(prepared, totals)
+        else:
+            _look_ahead(files[0], place, plot)
+            with progress("tracking") as watch:
+                tracked = track_recording(files[0], tracker, reading, watch, place, gate=width)
+            if place is not None:
+                with progress("writing") as watch:
+                    tracked.write(place, watch, quote_formulas=quote_formulas)
+            if plot is not None:
+                save_picture(plot, tracked.plot, (files[0],))
+            run = _Run.whole(tracked, listed=_LISTED if not json else len(tracked))
     if json:
         file = files[0] if len(files) == 1 else list(files)
         _print_json(run, {"file": file, "tracker": tracker}, {"output": output, "plot": plot})
         return
-    _print_table(run)
-    for written in filter(None, (output, plot)):
-        say(f"wrote {written}")
+    with told_aside(output):
+        _print_table(run)
+        for written in (output, plot):
+            if written not in (None, STANDARD_OUTPUT):
+                say(f"wrote {written}")
 
 
 def _goes_on(tracker: str | None) -> bool:
@@ -175,7 +181,7 @@ def _check_pieces(sort: bool, plot: str | None) -> None:
 
 
 def _folder(output: str | None) -> str:
-    if output is None:
+    if output is None or output == STANDARD_OUTPUT:
         raise ValueError("--jobs and --scheduler need -o DIR, a folder for the tracks")
     return output
 

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -141,7 +142,19 @@ class PlotFiles:
         return replace(self, inputs=self.inputs[number : number + 1])
 
     def absolute(self) -> PlotFiles:
-        """The same files under names that other processes understand."""
+        """The same files under names that other processes understand.
+
+        Raises
+        ------
+        DataError
+            If one is standard input or a pipe, which one process alone can read.
+        """
+        for each in self.inputs:
+            if isinstance(each, str) and (each == "-" or Path(each).is_fifo()):
+                raise DataError(
+                    f"{'standard input' if each == '-' else each}: cannot be read by several "
+                    "processes; save it to a file, or read it in one process"
+                )
         inputs = (os.path.abspath(e) if isinstance(e, str) else e for e in self.inputs)
         return replace(self, inputs=tuple(inputs))
 

@@ -1,7 +1,10 @@
 """What `track` writes: the columns of tables, and tracks on the earth."""
 
 import csv
+import io
 import json
+import os
+import threading
 
 import gpxpy
 import numpy as np
@@ -149,3 +152,41 @@ def test_data_frames_have_numbers_for_times(tmp_path):
     assert frame["coasted"].tolist() == [False] * 6
     np.testing.assert_allclose(frame["speed"][1:], 5.0)
     assert {"x_sd", "y_sd", "since_last"} <= set(frame)
+
+
+def test_tracks_are_printed_as_csv(run, tmp_path):
+    path, out = ships(tmp_path), tmp_path / "out.csv"
+    whole = run("track", path, *OPTIONS, "-o", out)
+    for more in ((), ("--chunk-rows", "20")):
+        printed = run("track", path, *OPTIONS, "-o", "-", *more)
+        assert printed.exit_code == 0
+        rows = list(csv.DictReader(io.StringIO(printed.stdout)))
+        assert sorted(map(str, rows)) == sorted(map(str, table(out)))
+        # What is told is no part of the tracks.
+        assert "columns: time time" in printed.stderr
+        assert "wrote" not in printed.stderr
+    assert f"wrote {out}" in whole.stdout
+
+
+def test_nothing_is_printed_of_tracks_that_fail(fails, tmp_path):
+    path = tmp_path / "bad.csv"
+    path.write_text("t,x\n0,1\n1,inf\n")
+    assert "row 3" in fails("track", path, "-o", "-")
+    assert "--json" in fails("track", path, "-o", "-", "--json")
+    assert "need -o DIR" in fails("track", path, "-o", "-", "--jobs", 2)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_pipe_is_read_by_one_process(fails, tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+
+    def feed():
+        pipe.write_text("t,x\n0,1\n1,2\n2,4\n")
+
+    feeder = threading.Thread(target=feed)
+    feeder.start()
+    message = fails("track", pipe, "--jobs", 2, "-o", tmp_path / "out")
+    feeder.join()
+    assert "cannot be read by several processes; save it to a file" in message
+    assert not (tmp_path / "out").exists()
