@@ -142,7 +142,7 @@ def track(
             run = _Run.whole(tracked, listed=_LISTED if not json else len(tracked))
     if json:
         file = files[0] if len(files) == 1 else list(files)
-        _print_json(run, {"file": file, "tracker": tracker}, {"output": output, "plot": plot})
+        _print_json(run, {"file": file, "tracker": run.tracker}, {"output": output, "plot": plot})
         return
     with told_aside(output):
         _print_table(run)
@@ -194,15 +194,16 @@ class _Run:
     """What is printed of a run: its columns, its totals, and those of single tracks if listed."""
 
     decoder: PlotDecoder
+    tracker: str
     findings: Findings
     total: Totals
-    tracks: tuple[tuple[str, Totals], ...] | None = None
+    tracks: tuple[tuple[Track, Totals], ...] | None = None
 
     @classmethod
     def of(cls, prepared: PreparedPlots, total: Totals) -> _Run:
         """Run of a recording in pieces."""
         prepared.findings.merge(total.findings)
-        return cls(prepared.files.decoder, prepared.findings, total)
+        return cls(prepared.files.decoder, prepared.spec, prepared.findings, total)
 
     @classmethod
     def whole(cls, tracked: TrackedRecording, listed: int) -> _Run:
@@ -211,14 +212,14 @@ class _Run:
         recording, results = tracked.recording, tracked.results
         if len(results) <= listed:
             pairs = zip(recording.tracks, results, strict=True)
-            tracks = tuple((_label(track), Totals.of([result])) for track, result in pairs)
+            tracks = tuple((track, Totals.of([result])) for track, result in pairs)
         assert recording.decoder is not None
-        return cls(recording.decoder, tracked.findings, tracked.totals, tracks)
+        return cls(recording.decoder, tracked.spec, tracked.findings, tracked.totals, tracks)
 
 
 def _label(track: Track) -> str:
     """Identity of a track, with the number of its segment from the second one on."""
-    return f"{track.id} ({track.segment + 1})".strip() if track.segment else track.id
+    return f"{track.id} ({track.segment + 1})" if track.segment else track.id
 
 
 def _noise_sentence(decoder: PlotDecoder) -> str:
@@ -260,7 +261,10 @@ def _print_json(run: _Run, read: dict[str, Any], written: dict[str, Any]) -> Non
     columns = run.decoder.columns
     tracks: dict[str, Any] = {"tracks": None, "number": run.total.tracks}
     if run.tracks is not None:
-        rows = [{"id": id if columns.id else None, **of.summary} for id, of in run.tracks]
+        rows = [
+            {"id": one.id if columns.id else None, "segment": one.segment, **of.summary}
+            for one, of in run.tracks
+        ]
         tracks = {"tracks": rows}
     total = {"total": run.total.summary}
     found = {
@@ -276,12 +280,14 @@ def _print_json(run: _Run, read: dict[str, Any], written: dict[str, Any]) -> Non
 def _print_table(run: _Run) -> None:
     columns = run.decoder.columns
     say(f"columns: {columns.sentence}")
+    say(f"tracker: {run.tracker}")
     noise = _noise_sentence(run.decoder)
     if noise:
         say(f"sigma: {noise}")
     for note in run.findings.notes:
         say_aside(f"note: {note}")
-    rows = [[id if columns.id else f"track{id}", *_row(of)] for id, of in run.tracks or ()]
+    start = "" if columns.id else "track"
+    rows = [[start + _label(one), *_row(of)] for one, of in run.tracks or ()]
     if len(rows) != 1:
         rows += [[]] if rows else []
         rows.append([f"all {run.total.tracks}" if columns.id else "track", *_row(run.total)])

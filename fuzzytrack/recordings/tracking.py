@@ -56,6 +56,8 @@ class PreparedPlots:
         The plots; noise and cleaning are settled.
     tracker : Tracker
         The tracker.
+    spec : str
+        What names it.
     table : TrackTable
         Columns of the tracks.
     judge : Judge or None
@@ -66,6 +68,7 @@ class PreparedPlots:
 
     files: PlotFiles
     tracker: Tracker
+    spec: str
     table: TrackTable
     judge: Judge | None = None
     findings: Findings = field(default_factory=Findings)
@@ -112,13 +115,13 @@ def prepare(
         findings.note([f"{survey.missing}. Tracked with {chosen}: {DEFAULT_TRACKER} needs it"])
     elif survey.missing:
         findings.note([survey.missing])
-    made = _suited(chosen, as_tracker(chosen) if made is None else made, files)
+    spec, made = _suited(chosen, as_tracker(chosen) if made is None else made, files)
     table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate, survey.noise)
-    return PreparedPlots(files, made, table, judge, findings)
+    return PreparedPlots(files, made, spec, table, judge, findings)
 
 
-def _suited(tracker: Tracker | str, made: Tracker, files: PlotFiles) -> Tracker:
-    """The tracker; where axes have different noise, and it can, with a covariance for each axis."""
+def _suited(tracker: Tracker | str, made: Tracker, files: PlotFiles) -> tuple[str, Tracker]:
+    """The tracker and what names it; with a covariance for each axis where their noise differs."""
     decoder = files.decoder
     differ = isinstance(decoder.sigma, tuple) or decoder.noise_is_polar
     scheduler = made.scheduler if isinstance(made, AlphaBetaTracker) else None
@@ -129,8 +132,9 @@ def _suited(tracker: Tracker | str, made: Tracker, files: PlotFiles) -> Tracker:
         and "axes" in scheduler.outputs.parameters
         and ":axes=" not in tracker
     ):
-        return make_tracker(f"{tracker}:axes=own")
-    return made
+        spec = f"{tracker}:axes=own"
+        return spec, make_tracker(spec)
+    return tracker if isinstance(tracker, str) else repr(tracker), made
 
 
 def track(
@@ -212,7 +216,9 @@ def track_recording(
     prepared.findings.merge(recording.findings)
     tracks, results = _run(prepared, recording.tracks, progress)
     recording = replace(recording, tracks=tracks)
-    return TrackedRecording(recording, results, prepared.tracker, prepared.table, prepared.findings)
+    return TrackedRecording(
+        recording, results, prepared.tracker, prepared.spec, prepared.table, prepared.findings
+    )
 
 
 def _run(
@@ -247,6 +253,8 @@ class TrackedRecording:
         What the tracker made of each.
     tracker : Tracker
         The tracker.
+    spec : str
+        What names it.
     table : TrackTable
         Columns of the table of tracks.
     findings : Findings
@@ -256,6 +264,7 @@ class TrackedRecording:
     recording: Recording
     results: tuple[TrackResult, ...]
     tracker: Tracker
+    spec: str
     table: TrackTable
     findings: Findings
 

@@ -22,7 +22,8 @@ def test_track_prints_a_summary(run, plots):
     result = run("track", plots, "--sigma", "2")
     assert result.exit_code == 0
     assert result.stderr == ""
-    columns, sigma, head, _, row = result.stdout.splitlines()
+    columns, tracker, sigma, head, _, row = result.stdout.splitlines()
+    assert tracker == "tracker: maneuver"
     assert columns == "columns: time t; no id: one track; position x, y"
     assert sigma == "sigma: 2"
     assert head.split() == [
@@ -73,6 +74,8 @@ def test_track_as_json(run, csv):
     result = run("track", path, "--id", "id", "--json")
     found = json.loads(result.stdout)
     assert [t["id"] for t in found["tracks"]] == ["007", "b"]
+    assert [t["segment"] for t in found["tracks"]] == [0, 0]
+    assert found["tracker"] == "stiffness-damping"
     assert found["tracks"][0]["innovation_rms"] == 0
     assert found["tracks"][1]["innovation_rms"] is None
     assert found["total"]["plots"] == 4
@@ -92,7 +95,8 @@ def test_innovation_rms_by_hand(run, plots):
 def test_many_tracks_give_totals_only(run, csv):
     text = "".join(f"{t},{k},{t * k}\n" for k in range(30) for t in range(4))
     result = run("track", csv("t,id,x\n" + text), "--id", "id")
-    columns, *lines = result.stdout.splitlines()
+    columns, tracker, *lines = result.stdout.splitlines()
+    assert tracker == "tracker: stiffness-damping"
     assert columns == "columns: time t; id id; position x"
     assert len(lines) == 3
     assert lines[2].split()[:4] == ["all", "30", "120", "0"]
