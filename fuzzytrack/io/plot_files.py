@@ -86,6 +86,8 @@ class PlotFiles:
     reading: Reading
     decoder: PlotDecoder
     notes: tuple[str, ...] = field(default=())
+    # The first rows, until they have been surveyed.
+    _first: Table | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return summary(self, "columns", inputs=len(self.inputs))
@@ -120,7 +122,8 @@ class PlotFiles:
         _check_alike(inputs, reading, {name: types[name] for name in columns.kinds}, origin)
         table = _first_table(inputs, reading, columns)
         decoder = _decoder(columns, description, table, units)
-        return cls(tuple(inputs), reading, decoder, _notes(names, columns, decoder.clock, table))
+        notes = _notes(names, columns, decoder.clock, table)
+        return cls(tuple(inputs), reading, decoder, notes, table)
 
     @property
     def columns(self) -> Columns:
@@ -139,7 +142,7 @@ class PlotFiles:
 
     def only(self, number: int) -> PlotFiles:
         """One of the files by itself, read as it is among the others."""
-        return replace(self, inputs=self.inputs[number : number + 1])
+        return replace(self, inputs=self.inputs[number : number + 1], _first=None)
 
     def absolute(self) -> PlotFiles:
         """The same files under names that other processes understand.
@@ -261,7 +264,7 @@ class PlotFiles:
         DataError
             As `pieces`.
         """
-        table = _first_table(self.inputs, self.reading, self.columns)
+        table = self._first or _first_table(self.inputs, self.reading, self.columns)
         found = self.survey(self.decoder.measured(table))
         return self.with_survey(found), found
 
@@ -299,7 +302,8 @@ class PlotFiles:
             decoder = decoder.with_estimate(*_estimate(survey.noise, decoder))
         if cleaning.least_step is None and survey.interval > 0:
             cleaning = replace(cleaning, least_step=_LEAST_STEP * survey.interval)
-        return replace(self, decoder=decoder, reading=replace(self.reading, cleaning=cleaning))
+        reading = replace(self.reading, cleaning=cleaning)
+        return replace(self, decoder=decoder, reading=reading, _first=None)
 
 
 # Noise of an axis, in parts of that of the axis with the largest.
