@@ -350,12 +350,16 @@ def _frame_at_first(table: Table, names: Sequence[str]) -> LocalFrame:
     from fuzzytrack.io.geodetic import LocalFrame
 
     places = np.stack([table.numbers[name] for name in names], axis=1)
-    good = (np.abs(places[:, 0]) <= 90) & (np.abs(places[:, 1]) <= 180)
+    longitudes = np.abs(places[:, 1])
+    good = (np.abs(places[:, 0]) <= 90) & (longitudes <= 360)
     if not good.any():
         raise DataError(
             f"{table.file}: columns {', '.join(names)}: no latitude and longitude within "
-            "-90 to 90 and -180 to 180"
+            "-90 to 90 and -180 to 360"
         )
+    # Where longitudes count from -180 to 180, more is what stands for none.
+    usual = good & (longitudes <= 180)
+    good = usual if usual.any() else good
     first = places[int(np.argmax(good))]
     altitude = first[2] if len(first) == 3 and math.isfinite(first[2]) else 0.0
     return LocalFrame(float(first[0]), float(first[1]), float(altitude))

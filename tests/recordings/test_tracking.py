@@ -219,3 +219,24 @@ def test_masked_whole_numbers_stay_exact():
     tracked = ft.track({"t_ns": time, "x": x}, "stiffness-damping", sigma=1.0, least_step=1e-9)
     assert np.diff(tracked.recording.tracks[0].time).tolist() == pytest.approx([7e-9] * 4)
     assert tracked.totals.missed == 1
+
+
+def test_longitudes_may_count_from_0_to_360():
+    t = np.arange(40.0)
+    noise = np.random.default_rng(3).normal(size=(2, 40)) * 1e-5
+    lat, lon = 10 + 1e-4 * t + noise[0], 359.998 + 1e-4 * t + noise[1]
+    for east in (lon % 360, lon - 170):
+        given = {"t": t, "lat": lat, "lon": east}
+        tracked = ft.track(given, geodetic=("lat", "lon"), sigma=1.0)
+        same = {"t": t, "lat": lat, "lon": (east + 180) % 360 - 180}
+        usual = ft.track(same, geodetic=("lat", "lon"), sigma=1.0)
+        filtered = [each.results[0].filtered for each in (tracked, usual)]
+        assert tracked.totals.plots == usual.totals.plots == 40
+        assert np.ptp(filtered[0], axis=0) == pytest.approx(np.ptp(filtered[1], axis=0), abs=0.1)
+
+
+def test_a_longitude_that_stands_for_none_is_no_origin():
+    t = np.arange(20.0)
+    lon = np.where(t == 0, 181.0, 5 + 1e-4 * t)
+    tracked = ft.track({"t": t, "lat": 10 + 0 * t, "lon": lon}, geodetic=("lat", "lon"), sigma=1.0)
+    assert tracked.totals.missed == 1
