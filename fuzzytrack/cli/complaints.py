@@ -21,7 +21,7 @@ from fuzzytrack.errors import (
 )
 from fuzzytrack.plugins.scripts import loaded_scripts, place_in_script
 
-__all__ = ["Command", "Commands", "one_line"]
+__all__ = ["Command", "Commands", "one_line", "printable"]
 
 # Arguments in a message: at its beginning, as in "jobs: ..." or "jobs and scheduler: ...", and
 # anywhere in backquotes.
@@ -101,16 +101,16 @@ def _line(error: Exception) -> str | None:
         return None
     line = ", ".join([f"{place or scripts}: {in_one_sentence(error)}", *notes])
     more = "; fuzzytrack.testing.check_scheduler or check_tracker says more" if notes else ""
-    return _printable(line + more)
+    return printable(line + more)
 
 
 def one_line(error: Exception) -> str:
     """Error as one line; a place in a file comes first, as compilers print it."""
     if isinstance(error, FileError) and error.location:
-        return _printable(str(error))
+        return printable(str(error))
     if isinstance(error, OSError) and error.filename is not None:
-        return _printable(f"error: {error.filename}: {error.strerror}")
-    return _printable(f"error: {error}")
+        return printable(f"error: {error.filename}: {error.strerror}")
+    return printable(f"error: {error}")
 
 
 def _usage(error: Any) -> str:
@@ -118,10 +118,10 @@ def _usage(error: Any) -> str:
         return str(error.format_message())
     context = getattr(error, "ctx", None)
     where = f" (see {context.command_path} --help)" if context is not None else ""
-    return _printable(f"error: {error.format_message().rstrip('.')}{where}")
+    return printable(f"error: {error.format_message().rstrip('.')}{where}")
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Escape the characters of a message that would control the terminal."""
     line = " ".join(part.strip() for part in text.splitlines())
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in line)
@@ -133,4 +133,4 @@ def _complain(line: str, status: int) -> int:
 
 
 def _show_warning(message: Warning | str, *rest: Any) -> None:
-    typer.echo(_printable(f"warning: {message}"), err=True)
+    typer.echo(printable(f"warning: {message}"), err=True)

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
+from fuzzytrack.cli.complaints import printable
 from fuzzytrack.cli.output import (
     print_json,
     print_table,
@@ -47,6 +48,8 @@ __all__ = ["track"]
 _LARGE = 100_000_000
 # With more tracks than this, only totals are printed.
 _LISTED = 20
+# Characters of an identity that are printed, at most.
+_LONGEST = 40
 _HEADS = ("plots", "missed", "duration (s)", "innovation RMS", "mean α", "mean β")
 
 
@@ -219,7 +222,9 @@ class _Run:
 
 def _label(track: Track) -> str:
     """Identity of a track, with the number of its segment from the second one on."""
-    return f"{track.id} ({track.segment + 1})" if track.segment else track.id
+    id = printable(track.id)
+    id = id if len(id) <= _LONGEST else id[:_LONGEST] + "…"
+    return f"{id} ({track.segment + 1})" if track.segment else id
 
 
 def _noise_sentence(decoder: PlotDecoder) -> str:

@@ -318,3 +318,12 @@ def test_a_tracker_that_looks_ahead_is_said_to(run, plots):
         "bank:selection=hindsight uses the plot" in run(*words, "bank:selection=hindsight").stderr
     )
     assert run(*words, "bank").stderr == ""
+
+
+def test_identities_cannot_control_the_terminal(run, csv):
+    name = "\x1b[31m" + "q" * 60
+    text = "".join(f"{t},{name},{t}\n" for t in range(3))
+    printed = run("track", csv("t,id,x\n" + text), "--id", "id").stdout
+    assert "\x1b" not in printed
+    assert "\\x1b[31m" in printed
+    assert "q" * 40 not in printed
