@@ -94,7 +94,16 @@ def _loop(tracker: Any, times: Array, plots: Array, predicted: Array) -> Work:
     code = (core.step_code().address, *steady, False, core.elapsed)
     room = core.room(np.float64)
     # One time and one sigma for all tracks.
-    given = (plots.reshape(-1), times, np.full(1, np.nan), (1, 0), (0, 0, 0), lanes, outputs)
+    given = (
+        plots.reshape(-1),
+        times,
+        np.full(1, np.nan),
+        (1, 0),
+        (0, 0, 0),
+        lanes,
+        outputs,
+        nothing,
+    )
     run, places = block_loop.compiled_run(), core.places
 
     def work() -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from fuzzytrack.arrays import Array, Mask
-from fuzzytrack.errors import TrackWarning
+from fuzzytrack.errors import DataError, TrackWarning
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.published import ALL_SETS, track_set
 from fuzzytrack.trackers.base import Tracker
@@ -82,7 +83,23 @@ def squared_errors(tracker: Tracker, plots: ScoredPlots) -> Array:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         # The errors show it if gains do not suit the times.
         warnings.simplefilter("ignore", TrackWarning)
-        predicted = tracker.run(plots.time, plots.z, plots.sigma).predicted
+        predicted = _predicted(tracker, plots)
         squares = ((predicted - plots.truth) ** 2).sum(axis=2)
         known = np.where(np.isnan(squares), np.inf, squares)
         return np.asarray(np.where(plots.scored, known, 0.0).sum(axis=0))
+
+
+def _predicted(tracker: Tracker, plots: ScoredPlots) -> Array:
+    """Predictions of all tracks; NaN for those that cannot be followed with numbers."""
+    try:
+        return tracker.run(plots.time, plots.z, plots.sigma).predicted
+    except DataError:
+        pass
+    found = np.full(plots.z.shape, np.nan)
+    for k in range(plots.z.shape[1]):
+        one = np.s_[:, k : k + 1]
+        time = plots.time[one] if plots.time.ndim == 2 else plots.time
+        sigma = np.broadcast_to(plots.sigma, plots.z.shape)[one]
+        with suppress(DataError):
+            found[one] = tracker.run(time, plots.z[one], sigma).predicted
+    return found

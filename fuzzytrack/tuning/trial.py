@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.errors import DataError, RuleBaseError
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
@@ -87,7 +87,11 @@ class Trials:
     def _sums(self, tracker: Tracker | None) -> Array:
         if tracker is None:
             return np.full(len(self.folds.fold), math.inf)
-        terms = [self.criterion.terms(tracker, batch) for batch in self.data.batches]
+        try:
+            terms = [self.criterion.terms(tracker, batch) for batch in self.data.batches]
+        except DataError:
+            # A track that cannot be followed with numbers.
+            return np.full(len(self.folds.fold), math.inf)
         return self.folds.by_unit(terms)
 
 

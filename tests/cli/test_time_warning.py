@@ -19,12 +19,13 @@ def pairs(csv):
 
 
 def test_track_says_it_once(run, pairs):
-    result = run("track", pairs, "--tracker", "fixed:alpha=0.5:beta=0.2", "--id", "id")
+    words = ("--tracker", "fixed:alpha=0.5:beta=0.2", "--id", "id", "--gate", "none")
+    result = run("track", pairs, *words)
     assert result.exit_code == 0
     (line,) = result.stderr.splitlines()
     assert line.startswith("warning: AlphaBetaTracker(FixedGains(0.5, 0.2)): its gains do not suit")
     # Again in the next command of this process, and beside JSON.
-    result = run("track", pairs, "--tracker", "fixed:alpha=0.5:beta=0.2", "--json", "--id", "id")
+    result = run("track", pairs, *words, "--json")
     assert len(result.stderr.splitlines()) == 1
     assert len(json.loads(result.stdout)["tracks"]) == 2
 

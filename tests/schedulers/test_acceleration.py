@@ -58,25 +58,19 @@ def test_to_leave_it_out_changes_no_number(monkeypatch, start, compile_above):
         np.testing.assert_array_equal(ours, theirs)
 
 
-@pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("compile_above", [0, 10**9])
-def test_an_acceleration_from_elsewhere_is_dropped(monkeypatch, compile_above, missed):
+def test_a_state_with_an_acceleration_is_not_for_a_tracker_without(monkeypatch, compile_above):
     monkeypatch.setattr(runner_module, "COMPILE_ABOVE", compile_above)
     times, plots = recording()
-    before = AlphaBetaTracker(FixedGains(0.6, 0.3, 0.1), missed=missed).run(times[:20], plots[:20])
-    half = before.state
+    half = AlphaBetaTracker(FixedGains(0.6, 0.3, 0.1)).run(times[:20], plots[:20]).state
     assert (half.acceleration != 0.0).any()
-    tracker = AlphaBetaTracker(FixedGains(0.6, 0.3), missed=missed)
-    after = tracker.run(times[20:], plots[20:], state=half)
-    # The state is that of the last plot, or of the last step.
-    counts = ~np.isnan(plots[:20]) | (missed == "step")
-    last = 19 - np.argmax(counts[::-1], axis=0)[None]
-    assert (last < 19).any() == (missed == "elapsed")
-    x, v = (np.take_along_axis(s, last, axis=0)[0] for s in (before.filtered, before.velocity))
-    first = x + v * (times[20] - times[last[0]])
-    np.testing.assert_array_equal(after.predicted[0], first)
-    assert (after.acceleration == 0.0).all()
-    assert (tracker.step(half, plots[20], times[20]).acceleration == 0.0).all()
+    tracker = AlphaBetaTracker(FixedGains(0.6, 0.3))
+    for go_on in (
+        lambda: tracker.run(times[20:], plots[20:], state=half),
+        lambda: tracker.step(half, plots[20], times[20]),
+    ):
+        with pytest.raises(ValueError, match="it comes from AlphaBetaTracker"):
+            go_on()
 
 
 def test_who_has_one():

@@ -258,7 +258,7 @@ def test_a_sigma_out_of_range_is_refused_where_it_counts(sigma):
     sigmas, plots = np.array([10.0, 10.0, sigma, 10.0]), np.array([0.0, 1.0, np.nan, 3.0])
     tracker.run(range(4), plots, sigmas, dtype=np.float32)
     plots[2] = 2.0
-    message = re.escape(f"sigma: {sigma:g} is out of the range of float32; use float64")
+    message = re.escape("from 1e-18 to 1e+18 since it is squared") + f".*{re.escape(f'{sigma:g}')}"
     with pytest.raises(ValueError, match=message):
         tracker.run(range(4), plots, sigmas, dtype=np.float32)
 
