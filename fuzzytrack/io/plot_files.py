@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from fuzzytrack.io.angles import unwrapped
 from fuzzytrack.io.cleaning import Cleaner
 from fuzzytrack.io.columns import Columns, choose_columns, looks_like_identity
 from fuzzytrack.io.decoder import Noise, PlotDecoder, joined_cells
-from fuzzytrack.io.description import PlotDescription
+from fuzzytrack.io.description import PlotDescription, TimeUnit
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.noise_estimate import NoiseEstimate, estimate_noise
@@ -332,6 +332,11 @@ def _decoder(
 ) -> PlotDecoder:
     cells = joined_cells(table, columns)
     unit = units.get(columns.time)
+    if unit is not None and unit not in get_args(TimeUnit) and description.time_unit is None:
+        raise DataError(
+            f"{table.file}: column {columns.time}: its unit is {unit!r}; expected one of "
+            f"{', '.join(get_args(TimeUnit))}; `time_unit` says which it is"
+        )
     clock = Clock.of(cells, unit=description.time_unit, name=columns.time, unit_of_name=unit)
     frame = None
     if description.site is not None:

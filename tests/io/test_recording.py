@@ -246,3 +246,12 @@ def test_files_that_do_not_agree(tmp_path):
         plot_files(first, tmp_path / "c.parquet")
     with pytest.raises(DataError, match="column 'x' cannot serve twice"):
         plot_files(first, id="x")
+
+
+def test_a_unit_that_is_no_time_is_named(tmp_path):
+    path = written(tmp_path, "t,x\n[m],[m]\n0,1\n1,2\n")
+    with pytest.raises(
+        DataError, match=r"column t: its unit is 'm'; expected one of s, ms, us, ns"
+    ):
+        read_tracks(path)
+    assert len(read_tracks(path, time_unit="s").tracks) == 1
