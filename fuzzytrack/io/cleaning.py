@@ -21,7 +21,7 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io import cleaning_step
 from fuzzytrack.io.cleaning_step import OWN, clean_rows
 from fuzzytrack.io.equal_times import EqualTimes
-from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.piece import Piece, check_finite, place_of
 from fuzzytrack.io.time_cells import same_time
 from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import constructor_code
@@ -261,7 +261,7 @@ class Cleaner:
         ValueError
             If the number of axes changes.
         """
-        _check_finite(piece)
+        check_finite(piece)
         piece = self._without_fills(piece)
         return self._cleaned(piece if self._equal is None else self._equal.advance(piece))
 
@@ -403,7 +403,7 @@ class Cleaner:
                 f"is earlier than {self._show(time + fall)} in {before}; expected increasing times"
                 f"{self._remedies(fall, track, bool(id))}"
             )
-        where = f"{_where(piece, place)}{self._column and f', column {self._column}'}"
+        where = f"{place_of(piece, place)}{self._column and f', column {self._column}'}"
         return DataError(f"{where}: time {self._show(time)}{whose} {what}")
 
     def _remedies(self, fall: float, track: Array, identified: bool) -> str:
@@ -504,19 +504,3 @@ def _new_tracks(count: int, width: int) -> Array:
     state[:, cleaning_step.PLOT] = math.nan
     state[:, OWN:] = math.nan
     return state
-
-
-def _check_finite(piece: Piece) -> None:
-    for name, bad, wanted in (
-        ("time", ~np.isfinite(piece.time), "a finite number"),
-        ("plot", np.isinf(piece.plots).any(axis=1), "finite numbers, or NaN where missed"),
-    ):
-        if bad.any():
-            row = int(np.argmax(bad))
-            value = piece.time[row] if name == "time" else piece.plots[row]
-            raise DataError(f"{_where(piece, row)}: {name} {value}; expected {wanted}")
-
-
-def _where(piece: Piece, row: int) -> str:
-    place = f"row {piece.rows[row]}"
-    return f"{piece.file}: {place}" if piece.file else place

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.errors import DataError
 from fuzzytrack.io.table import Cells, Words
 from fuzzytrack.reprs import summary
 
-__all__ = ["Piece", "joined", "joined_cells"]
+__all__ = ["Piece", "check_finite", "joined", "joined_cells", "place_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,3 +170,21 @@ def joined_cells(parts: Sequence[Cells | None]) -> Cells | None:
     if any(part is None for part in parts):
         return None
     return [str(cell) for part in parts if part is not None for cell in part]
+
+
+def check_finite(piece: Piece) -> None:
+    """Raise a DataError for the first time or plot that is infinite; names its row."""
+    for name, bad, wanted in (
+        ("time", ~np.isfinite(piece.time), "a finite number"),
+        ("plot", np.isinf(piece.plots).any(axis=1), "finite numbers, or NaN where missed"),
+    ):
+        if bad.any():
+            row = int(np.argmax(bad))
+            value = piece.time[row] if name == "time" else piece.plots[row]
+            raise DataError(f"{place_of(piece, row)}: {name} {value}; expected {wanted}")
+
+
+def place_of(piece: Piece, row: int) -> str:
+    """File and row of a row of a piece, for messages."""
+    place = f"row {piece.rows[row]}"
+    return f"{piece.file}: {place}" if piece.file else place

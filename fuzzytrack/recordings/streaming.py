@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.piece import Piece, check_finite, place_of
 from fuzzytrack.lanes.layout import GAINS
 from fuzzytrack.recordings.judge import Judge, JudgeMemory
 from fuzzytrack.recordings.judged import run_judged
@@ -101,7 +101,7 @@ def run_iter(
     Examples
     --------
     >>> from fuzzytrack import AlphaBetaTracker, FixedGains
-    >>> from fuzzytrack.io.piece import Piece
+    >>> from fuzzytrack.io.piece import Piece, check_finite, place_of
     >>> first = Piece.of(["a", "b", "a"], [0, 0, 1], [[0.0], [5.0], [10.0]])
     >>> second = Piece.of(["a", "a"], [2, 3], [[19.0], [31.0]])
     >>> tracker = AlphaBetaTracker(FixedGains(0.5, 0.2))
@@ -173,7 +173,7 @@ class OpenTracks:
         marks = (None, None) if self.judge is None else np.zeros((2, len(piece.time)), np.bool_)
         tracked = TrackedPiece(piece, outputs, *marks)
         if len(piece.time):
-            _check_finite(piece)
+            check_finite(piece)
             self._advance(tracked, self._store_for(piece))
         if self.judge is not None and self.judge.circle is not None:
             for name in {"predicted", "filtered"} & outputs.keys():
@@ -259,17 +259,6 @@ class OpenTracks:
 # -------------------------------------------------------------------- checks
 
 
-def _check_finite(piece: Piece) -> None:
-    for name, bad, wanted in (
-        ("time", ~np.isfinite(piece.time), "a finite number"),
-        ("plot", np.isinf(piece.plots).any(axis=1), "finite numbers, or NaN where missed"),
-    ):
-        if bad.any():
-            row = int(np.argmax(bad))
-            value = piece.time[row] if name == "time" else piece.plots[row]
-            raise DataError(f"{_where(piece, row)}: {name} {value}; expected {wanted}")
-
-
 def _check_times(piece: Piece, order: Slots, starts: Slots, last: Array) -> None:
     times = piece.time[order]
     before = np.empty_like(times)
@@ -281,15 +270,10 @@ def _check_times(piece: Piece, order: Slots, starts: Slots, last: Array) -> None
         row = int(order[place])
         what = "repeats" if times[place] == before[place] else "is earlier than"
         raise DataError(
-            f"{_where(piece, row)}: time {times[place]:.15g}{_whose(piece, row)} {what} "
+            f"{place_of(piece, row)}: time {times[place]:.15g}{_whose(piece, row)} {what} "
             f"{before[place]:.15g}, the time of the plot before; expected increasing times in each "
             "track, from piece to piece and from file to file"
         )
-
-
-def _where(piece: Piece, row: int) -> str:
-    place = f"row {piece.rows[row]}"
-    return f"{piece.file}: {place}" if piece.file else place
 
 
 def _whose(piece: Piece, row: int) -> str:

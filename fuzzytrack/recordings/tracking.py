@@ -335,8 +335,12 @@ class TrackedRecording:
         """Picture of the tracks, see `fuzzytrack.plot_track`."""
         from fuzzytrack.plotting import plot_track
 
-        names = self.recording.columns.axes
-        return plot_track(join_tracks(self.results), axes_names=names, unit="")[0]
+        columns, decoder = self.recording.columns, self.recording.decoder
+        # Cartesian positions are in the unit of the file.
+        unit = {"polar": "m", "geodetic": "m", "angle": "deg"}.get(columns.position, "")
+        if decoder is not None and decoder.period not in (None, 360.0):
+            unit = "rad"
+        return plot_track(join_tracks(self.results), axes_names=columns.axes, unit=unit)[0]
 
     def _repr_html_(self) -> str:
         """Table of the first tracks, with a small picture, for notebooks."""

@@ -32,7 +32,7 @@ class Nothing(Reader):
         self.needed = needed
 
     def open_source(self, file):
-        raise NotImplementedError
+        raise AssertionError("opened, although it cannot be made")
 
 
 @pytest.fixture
