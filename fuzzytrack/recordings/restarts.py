@@ -17,7 +17,7 @@ from fuzzytrack.recordings.judged import Judged
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
-__all__ = ["Restarts", "divided"]
+__all__ = ["Restarts", "divided", "part_of"]
 
 
 class Restarts:
@@ -71,7 +71,7 @@ def divided(
         for start, end in pairwise(edges):
             rows = slice(start, end)
             parts.append(track.part(rows))
-            results.append(_part(one.result, rows))
+            results.append(part_of(one.result, rows))
     seen: Counter[str] = Counter()
     numbered = []
     for part in parts:
@@ -80,7 +80,8 @@ def divided(
     return tuple(numbered), tuple(results)
 
 
-def _part(result: TrackResult, rows: slice) -> TrackResult:
+def part_of(result: TrackResult, rows: slice) -> TrackResult:
+    """Some rows of a result that follow each other, without a state."""
     if rows == slice(0, len(result.time)):
         return result
     kept: dict[str, Any] = {

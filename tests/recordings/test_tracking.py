@@ -240,3 +240,13 @@ def test_a_longitude_that_stands_for_none_is_no_origin():
     lon = np.where(t == 0, 181.0, 5 + 1e-4 * t)
     tracked = ft.track({"t": t, "lat": 10 + 0 * t, "lon": lon}, geodetic=("lat", "lon"), sigma=1.0)
     assert tracked.totals.missed == 1
+
+
+def test_no_line_joins_a_full_circle_and_zero():
+    t = np.arange(12.0)
+    tracked = ft.track({"t": t, "bearing": (354 + t) % 360}, angle="bearing", sigma=0.2)
+    axes = tracked.plot().axes[0]
+    assert axes.get_ylabel() == "bearing (deg)"
+    for line in axes.get_lines():
+        steps = np.abs(np.diff(np.asarray(line.get_ydata(), dtype=float)))
+        assert not (steps > 180).any()
