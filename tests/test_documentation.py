@@ -119,7 +119,9 @@ def test_commands_on_pages_about_files_run(page, number, tmp_path, monkeypatch):
             assert line.split() in found, f"{words}\n{line}\nis not in\n{result.output}"
 
 
-@pytest.mark.parametrize("name", ["demo", "track", "compare", "testbed", "tune", "simulate"])
+@pytest.mark.parametrize(
+    "name", ["demo", "sample", "track", "compare", "testbed", "tune", "simulate"]
+)
 def test_the_page_of_commands_names_every_option(name):
     page = (ROOT / "docs" / "cli.md").read_text()
     section = re.search(rf"^## [^\n]*\b{name}\n(.*?)^## ", page + "\n## ", flags=re.M | re.S)

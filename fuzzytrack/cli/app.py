@@ -17,6 +17,10 @@ __all__ = ["app"]
 # when its command is called, so that a command loads only what it uses.
 COMMANDS = {
     "demo": ("demo:demo", "Track a simulated turning target, and draw the results."),
+    "sample": (
+        "sample:sample",
+        "Write a small simulated recording to try things with, or list them.",
+    ),
     "track": (
         "track:track",
         "Track the plots of a file, or of several files in their order.",

@@ -10,6 +10,7 @@ from fuzzytrack.simulation.published import (
     track_set,
     warship,
 )
+from fuzzytrack.simulation.samples import SAMPLES, Sample, make_sample
 from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario
 from fuzzytrack.simulation.sensor_field import SensorField, canonical_field, sensor_grid
 from fuzzytrack.simulation.starting import prepare_start
@@ -23,10 +24,12 @@ from fuzzytrack.simulation.trajectories import (
 )
 
 __all__ = [
+    "SAMPLES",
     "FieldSensors",
     "Noise",
     "PlotNoise",
     "Plots",
+    "Sample",
     "Scenario",
     "SensorField",
     "TrackSet",
@@ -37,6 +40,7 @@ __all__ = [
     "fuse_pair",
     "kim_lee",
     "llinas_maneuver",
+    "make_sample",
     "noisy_plots",
     "prepare_start",
     "s3",
