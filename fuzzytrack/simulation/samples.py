@@ -279,7 +279,7 @@ def _ais(rng: np.random.Generator) -> Sample:
         plots: Columns = {
             "time": time,
             **_places(measured, *_HARBOR, 6),
-            "sog": np.round(np.abs(speed + rng.normal(0, 0.1, len(time))), 1),
+            "sog": np.round(speed + rng.normal(0, 0.1, len(time)), 1),
             "cog": np.mod(np.round(course + rng.normal(0, 1, len(time)), 1), 360),
         }
         truth: Columns = {
