@@ -58,7 +58,7 @@ $(LOWEST)/.installed: pyproject.toml .ci/lowest.py
 	$(PYTHON) -m venv $(LOWEST)
 	$(PYTHON) .ci/lowest.py > $(LOWEST)/constraints.txt
 	$(LOWEST)/bin/python -m pip -qq --disable-pip-version-check --no-input install \
-		--constraint $(LOWEST)/constraints.txt --editable '.[parquet,zst,tune,geo,asterix,ais]' pytest hypothesis jsonschema
+		--constraint $(LOWEST)/constraints.txt --editable '.[parquet,zst,geo,asterix,ais]' pytest hypothesis jsonschema
 	@touch $@
 
 # The oldest packages use what the newest ones warn of; that is not for us to mend.

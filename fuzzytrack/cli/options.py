@@ -11,19 +11,15 @@ from fuzzytrack.plugins.scripts import load_script
 from fuzzytrack.yamltree import suggestion
 
 __all__ = [
-    "Axes",
     "Dt",
-    "Id",
+    "Gate",
     "Json",
-    "PlotSigma",
     "Plots",
     "Plugins",
     "Scenario",
     "ScenarioOrNone",
     "Seed",
     "Sigma",
-    "Sort",
-    "Time",
     "load_plugins",
     "names",
     "numbers_at",
@@ -31,18 +27,14 @@ __all__ = [
 ]
 
 Plots = Annotated[str, typer.Argument(metavar="FILE", help="CSV (or Parquet) file.")]
-Time = Annotated[
-    str | None, typer.Option(metavar="COL", help="Column of time (s). [default: t, t_s, time…]")
+Gate = Annotated[
+    str,
+    typer.Option(
+        "--gate",
+        metavar="K|auto|none",
+        help="Do not use plots more than K sigma from their prediction. [auto: 20]",
+    ),
 ]
-Id = Annotated[
-    str | None,
-    typer.Option(metavar="COL", help="Column that identifies the track. [default: one track]"),
-]
-Axes = Annotated[
-    str | None,
-    typer.Option(metavar="COL,COL", help="Columns of position. [default: x,y,z or x_m,y_m,z_m]"),
-]
-Sort = Annotated[bool, typer.Option("--sort", help="Put the plots in order of time.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the noise.")]
 _SCENARIO = typer.Argument(metavar="SCENARIO", help="Name of a shipped scenario, or FILE.yaml.")
 Scenario = Annotated[str, _SCENARIO]
@@ -51,12 +43,6 @@ Dt = Annotated[float, typer.Option("--dt", metavar="T", help="Sampling time, s."
 Sigma = Annotated[
     float | None,
     typer.Option("--sigma", metavar="S", help="Standard deviation of a measured position, m."),
-]
-PlotSigma = Annotated[
-    float | None,
-    typer.Option(
-        "--sigma", metavar="S", help="Standard deviation of the plots, if the tracker needs it."
-    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
 Plugins = Annotated[

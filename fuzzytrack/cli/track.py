@@ -68,13 +68,7 @@ def track(
             help=f"See `fuzzytrack trackers`. [default: {DEFAULT_TRACKER}]",
         ),
     ] = None,
-    gate: Annotated[
-        str,
-        typer.Option(
-            metavar="K|auto|none",
-            help="Do not use plots more than K sigma from their prediction. [auto: 20]",
-        ),
-    ] = "auto",
+    gate: options.Gate = "auto",
     output: Annotated[
         str | None,
         typer.Option(

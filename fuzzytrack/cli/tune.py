@@ -8,9 +8,11 @@ from typing import Annotated
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import print_json, print_table, progress, say, show
+from fuzzytrack.cli.output import print_json, print_table, progress, say, say_aside, show
+from fuzzytrack.cli.plot_options import number_or, reads_plots
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.io.files import check_output
+from fuzzytrack.io.reading import Reading
 from fuzzytrack.plurals import counted
 from fuzzytrack.specs import is_file, split
 from fuzzytrack.tuning.tuned import Tuned
@@ -20,15 +22,17 @@ from fuzzytrack.workers import workers
 __all__ = ["tune"]
 
 
+@reads_plots
 def tune(
     data: Annotated[
         list[str],
         typer.Argument(
             metavar="DATA|SCENARIO...",
-            help="File of plots; or a shipped scenario, or FILE.yaml, to be simulated. Several "
-            "count alike.",
+            help="File or folder of plots; or a shipped scenario, or FILE.yaml, to be simulated. "
+            "Several count alike.",
         ),
     ],
+    reading: Reading,
     tracker: Annotated[
         str,
         typer.Option(
@@ -50,11 +54,6 @@ def tune(
         str | None,
         typer.Option("--output", "-o", metavar="OUT.yaml", help="Write the tuned rule base."),
     ] = None,
-    time: options.Time = None,
-    id: options.Id = None,
-    axes: options.Axes = None,
-    sigma: options.PlotSigma = None,
-    sort: options.Sort = False,
     truth: Annotated[
         str | None,
         typer.Option(
@@ -62,6 +61,7 @@ def tune(
             help="True positions, or their columns. [default: the plots are]",
         ),
     ] = None,
+    gate: options.Gate = "auto",
     runs: Annotated[int, typer.Option(min=1, help="Runs of a scenario.")] = 60,
     seed: options.Seed = 0,
     trials: Annotated[
@@ -86,7 +86,7 @@ def tune(
     """Tune the numbers of a tracker, and judge it on tracks that it was not tuned on.
 
     The same seed gives the same numbers on any number of processes. Without --truth, predictions of
-    recorded plots are compared with the plots.
+    recorded plots are compared with the plots, which are read as `fuzzytrack track` reads them.
     """
     options.load_plugins(plugin)
     if output is not None:
@@ -97,12 +97,9 @@ def tune(
                 data,
                 tracker,
                 free=None if free is None else options.names(free, "--free"),
-                sigma=sigma,
                 truth=truth,
-                time=time,
-                id=id,
-                axes=None if axes is None else options.names(axes, "--axes"),
-                sort=sort,
+                gate=number_or(gate, "--gate", {"auto": "auto", "none": None}),
+                reading=reading,
                 runs=runs,
                 seed=seed,
                 trials=trials,
@@ -141,6 +138,8 @@ def _check_output(output: str, tracker: str, data: list[str]) -> None:
 
 
 def _print(found: Tuned) -> None:
+    for note in found.notes:
+        say_aside(f"note: {note}")
     say(
         f"{found.data}: {counted(found.plots, 'plot')}, {found.folds} folds by {found.units}, "
         f"{counted(found.trials, 'trial')}, seed {found.seed}"

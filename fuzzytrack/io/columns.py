@@ -12,7 +12,7 @@ from fuzzytrack.io.description import PlotDescription, texts
 from fuzzytrack.io.table import Kind
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["Columns", "PositionKind", "choose_columns", "looks_like_identity"]
+__all__ = ["Columns", "PositionKind", "choose_columns", "looks_like_angle", "looks_like_identity"]
 
 PositionKind = Literal["cartesian", "polar", "geodetic", "angle"]
 
@@ -342,6 +342,11 @@ def _check_used(said: PlotDescription, columns: Columns) -> None:
             raise DataError(
                 f"`valid`: {name!r} is no column of position{suggestion(name, columns.read)}"
             )
+
+
+def looks_like_angle(name: str) -> bool:
+    """Whether a word in the name of a column is that of an azimuth."""
+    return any(word in _POLAR for word in plain_name(name)[0].split("_"))
 
 
 def looks_like_identity(names: Sequence[str], columns: Columns) -> str:

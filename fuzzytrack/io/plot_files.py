@@ -33,7 +33,7 @@ from fuzzytrack.tasks import Progress
 if TYPE_CHECKING:
     from fuzzytrack.io.geodetic import LocalFrame
 
-__all__ = ["ROWS", "Input", "PlotFiles", "Survey"]
+__all__ = ["ROWS", "Input", "PlotFiles", "Survey", "opened"]
 
 #: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
 ROWS = 250_000
@@ -114,7 +114,7 @@ class PlotFiles:
         reading = reading or Reading()
         if not inputs:
             raise DataError("plots: no file is given; expected at least one")
-        with _opened(inputs[0], reading) as source:
+        with opened(inputs[0], reading) as source:
             description = reading.description.over(getattr(source, "description", None))
             names, types = tuple(source.types), dict(source.types)
             units, origin = getattr(source, "units", {}), getattr(source, "origin", "")
@@ -235,7 +235,7 @@ class PlotFiles:
                 if progress is not None:
                     progress((before + share * size) / total)
 
-            with _opened(each, self.reading) as source:
+            with opened(each, self.reading) as source:
                 for table in source.tables(self.columns.kinds, rows, watch):
                     named = _named(table, self.columns)
                     found.unnamed += len(table.rows) - len(named.rows)
@@ -422,7 +422,7 @@ def _check_alike(
     """Check that all files have the columns of the first one, of the same types and origin."""
     first = _name(inputs[0])
     for each in inputs[1:]:
-        with _opened(each, reading) as source:
+        with opened(each, reading) as source:
             others, whence = source.types, getattr(source, "origin", "")
         file = _name(each)
         if whence != origin:
@@ -443,7 +443,7 @@ def _first_table(inputs: Sequence[Input], reading: Reading, columns: Columns) ->
     """First rows of the first file that has any."""
     seen = False
     for each in inputs:
-        with _opened(each, reading) as source:
+        with opened(each, reading) as source:
             for table in source.tables(columns.kinds, ROWS):
                 seen = True
                 named = _named(table, columns)
@@ -465,7 +465,8 @@ def _named(table: Table, columns: Columns) -> Table:
     return table.with_words(columns.id) if columns.id else table
 
 
-def _opened(each: Input, reading: Reading) -> AbstractContextManager[Source]:
+def opened(each: Input, reading: Reading) -> AbstractContextManager[Source]:
+    """Open a file, or columns in memory, as a reading says."""
     if isinstance(each, str):
         return open_table(each, reading.form, format=reading.format)
     return nullcontext(each)

@@ -11,6 +11,7 @@ import numpy as np
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.data_frame import FrameSource
+from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.plot_files import Input, PlotFiles
@@ -118,18 +119,32 @@ def prepare(
         findings.note([f"{survey.missing}. Tracked with {chosen}: {DEFAULT_TRACKER} needs it"])
     elif survey.missing:
         findings.note([survey.missing])
-    spec, made = _suited(chosen, as_tracker(chosen) if made is None else made, files)
+    made = as_tracker(chosen) if made is None else made
+    spec, made = suited(chosen, made, axes_differ=noise_differs(files.decoder))
     table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate, survey.noise)
     return PreparedPlots(files, made, spec, table, judge, findings)
 
 
-def _suited(tracker: Tracker | str, made: Tracker, files: PlotFiles) -> tuple[str, Tracker]:
-    """The tracker and what names it; with a covariance for each axis where their noise differs."""
-    decoder = files.decoder
-    differ = isinstance(decoder.sigma, tuple) or decoder.noise_is_polar
+def noise_differs(decoder: PlotDecoder) -> bool:
+    """Whether the noise of plots differs between their axes."""
+    return isinstance(decoder.sigma, tuple) or decoder.noise_is_polar
+
+
+def suited(tracker: Tracker | str, made: Tracker, *, axes_differ: bool) -> tuple[str, Tracker]:
+    """A tracker and what names it; with a covariance for each axis where their noise differs.
+
+    Parameters
+    ----------
+    tracker : Tracker or str
+        The tracker, or what names it. Only a text is changed.
+    made : Tracker
+        The tracker itself.
+    axes_differ : bool
+        Whether the noise of the plots differs between axes.
+    """
     scheduler = made.scheduler if isinstance(made, AlphaBetaTracker) else None
     if (
-        differ
+        axes_differ
         and isinstance(tracker, str)
         and isinstance(scheduler, FuzzyScheduler)
         and "axes" in scheduler.outputs.parameters

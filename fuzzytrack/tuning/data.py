@@ -7,20 +7,30 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.formats import open_table
-from fuzzytrack.io.recording import Recording, Track, read_tracks
+from fuzzytrack.io.angles import unwrapped
+from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.plot_files import PlotFiles
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import Recording, Track, read_recording
 from fuzzytrack.plurals import counted
-from fuzzytrack.recordings.ragged import batches
+from fuzzytrack.recordings.judge import Judge
+from fuzzytrack.recordings.judging import GateWidth, judge_of
+from fuzzytrack.recordings.ragged import batches, run_judged_tracks
+from fuzzytrack.recordings.restarts import divided
+from fuzzytrack.recordings.tracking import DEFAULT_TRACKER, inputs_of, noise_differs, suited
+from fuzzytrack.recordings.truth import read_truth, true_positions
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import streams, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
-from fuzzytrack.yamltree import suggestion
+from fuzzytrack.trackers.catalog import as_tracker
 
 __all__ = ["LEAST_PLOTS", "Batch", "TuningData", "TuningTrack", "joined", "recorded", "simulated"]
 
@@ -107,6 +117,10 @@ class TuningData:
         Of the file or scenario.
     tracks : tuple of TuningTrack
         At least one; either all with truth or none.
+    axes_differ : bool
+        Whether the noise of the plots differs between axes.
+    notes : tuple of str
+        What was guessed, left out or put right when the plots were read, each in a sentence.
 
     Raises
     ------
@@ -116,6 +130,8 @@ class TuningData:
 
     name: str
     tracks: tuple[TuningTrack, ...]
+    axes_differ: bool = False
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         count = sum(int(track.scored.sum()) for track in self.tracks)
@@ -211,6 +227,8 @@ def joined(parts: Sequence[TuningData]) -> TuningData:
         If they differ in their axes, or in whether truth and sigma are known.
     """
     first = parts[0]
+    if len(parts) == 1:
+        return first
     for other in parts[1:]:
         for what in ("n_axes", "has_truth", "has_sigma"):
             if getattr(other, what) != getattr(first, what):
@@ -219,7 +237,12 @@ def joined(parts: Sequence[TuningData]) -> TuningData:
                     f"in {_DIFFERENCES[what]}"
                 )
     tracks = (replace(track, group=k) for k, part in enumerate(parts) for track in part.tracks)
-    return TuningData(", ".join(part.name for part in parts), tuple(tracks))
+    return TuningData(
+        ", ".join(part.name for part in parts),
+        tuple(tracks),
+        axes_differ=any(part.axes_differ for part in parts),
+        notes=tuple(f"{part.name}: {note}" for part in parts for note in part.notes),
+    )
 
 
 _DIFFERENCES = {
@@ -260,29 +283,26 @@ def simulated(scenario: Scenario, runs: int, seed: int) -> TuningData:
 
 
 def recorded(
-    path: str | os.PathLike[str],
+    plots: Any,
+    reading: Reading | None = None,
     *,
-    sigma: float | None = None,
     truth: str | os.PathLike[str] | None = None,
-    time: str | None = None,
-    id: str | None = None,
-    axes: Sequence[str] | None = None,
-    sort: bool = False,
+    gate: GateWidth = "auto",
 ) -> TuningData:
-    """Recorded plots.
+    """Recorded plots, read as `fuzzytrack.track` reads them.
 
     Parameters
     ----------
-    path : str or path
-        File of plots, see `fuzzytrack.io.read_tracks`.
-    sigma : float, optional
-        Standard deviation of all plots (m).
+    plots : path, data frame, mapping or tuple
+        As for `fuzzytrack.track`.
+    reading : Reading, optional
+        How they are read. Without a standard deviation of the plots it is estimated from them.
     truth : str or path, optional
-        File of true positions with the same columns and identities; between its times they are
-        interpolated linearly, and outside of them plots are not scored. If there is no such file,
-        columns of the file of plots, with commas between them.
-    time, id, axes, sort
-        As for `fuzzytrack.io.read_tracks`.
+        True positions, see `fuzzytrack.recordings.truth.read_truth`. Where they are not known,
+        plots are not scored.
+    gate : float, "auto" or None
+        As for `fuzzytrack.track`: plots that its default tracker does not use are missed plots, so
+        that they do not decide what is tuned.
 
     Raises
     ------
@@ -291,52 +311,55 @@ def recorded(
     OSError
         If a file cannot be read.
     """
-    if sigma is not None and not 0 < sigma < math.inf:
-        raise ValueError(f"sigma must be > 0, got {sigma:g}")
-    recording = read_tracks(path, time=time, id=id, axes=axes, sort=sort)
-    true: Recording | None = None
-    if truth is not None and os.path.exists(truth):
-        true = read_tracks(truth, time=time, id=id, axes=axes, sort=sort)
-    elif truth is not None:
-        true = read_tracks(path, time=time, id=id, axes=_columns(path, truth), sort=sort)
-    tracks = tuple(
-        TuningTrack(
-            track.id,
-            track.time,
-            track.plots,
-            None if true is None else _truth(track, true),
-            None if sigma is None else np.full(track.plots.shape, float(sigma)),
-        )
-        for track in recording.tracks
+    files, survey = PlotFiles.of(inputs_of(plots), reading).surveyed()
+    judge = judge_of(files.decoder, gate, survey.noise)
+    recording = read_recording(files)
+    findings, decoder = recording.findings, files.decoder
+    findings.note([survey.missing] if survey.missing else [])
+    tracks = recording.tracks
+    if judge is not None and judge.gate is not None:
+        tracks = _used(tracks, files, judge, findings)
+    true = None if truth is None else read_truth(truth, files)
+    found = tuple(_tuning_track(track, decoder, true) for track in tracks)
+    return TuningData(
+        files.names[0],
+        found,
+        axes_differ=noise_differs(decoder),
+        notes=(*findings.notes, *findings.sentences()),
     )
-    return TuningData(os.fspath(path), tracks)
 
 
-def _columns(path: str | os.PathLike[str], truth: str | os.PathLike[str]) -> list[str]:
-    """Columns of true positions in the file of plots."""
-    names = [name.strip() for name in os.fspath(truth).split(",")]
-    with open_table(os.fspath(path)) as source:
-        there = tuple(source.types)
-    for name in names:
-        if name not in there:
-            raise DataError(
-                f"truth: there is no file {os.fspath(truth)}, and {os.fspath(path)} has no column "
-                f"{name!r}{suggestion(name, there)}"
-            )
-    return names
-
-
-def _truth(track: Track, true: Recording) -> Array:
-    """True positions at the times of a track."""
-    for other in true.tracks:
-        if other.id == track.id:
-            break
-    else:
-        raise DataError(f"{true.file}: has no track {track.id!r}, for which there are plots")
-    if other.plots.shape[1] != track.plots.shape[1]:
-        raise DataError(
-            f"{true.file}: has {other.plots.shape[1]} axes, the plots have {track.plots.shape[1]}"
-        )
-    return np.stack(
-        [np.interp(track.time, other.time, x, np.nan, np.nan) for x in other.plots.T], axis=1
+def _used(
+    tracks: Sequence[Track], files: PlotFiles, judge: Judge, findings: Findings
+) -> tuple[Track, ...]:
+    """Tracks without the plots that a gate rejects, divided where it begins them again."""
+    named, differ = DEFAULT_TRACKER, noise_differs(files.decoder)
+    _, tracker = suited(named, as_tracker(named), axes_differ=differ)
+    sigmas = [track.sigma for track in tracks if track.sigma is not None]
+    judged = run_judged_tracks(
+        tracker,
+        [(track.time, track.plots) for track in tracks],
+        files.decoder.sigma,
+        judge,
+        sigmas=sigmas or None,
+        keep=("predicted",),
     )
+    findings.rejected += sum(int(one.rejected.sum()) for one in judged)
+    findings.restarts += sum(int(one.begins.sum()) for one in judged)
+    used = [
+        replace(track, plots=np.where(one.rejected[:, None], np.nan, track.plots))
+        for track, one in zip(tracks, judged, strict=True)
+    ]
+    return divided(used, judged)[0]
+
+
+def _tuning_track(track: Track, decoder: PlotDecoder, true: Recording | None) -> TuningTrack:
+    if decoder.period is not None:
+        # Without jumps, so that differences are those on the circle.
+        series = unwrapped(track.plots[:, 0], period=decoder.period)
+        track = replace(track, plots=series[:, None])
+    sigma = track.sigma
+    if sigma is None and decoder.sigma is not None:
+        sigma = np.broadcast_to(np.asarray(decoder.sigma, dtype=np.float64), track.plots.shape)
+    truth = None if true is None else true_positions(track, true)
+    return TuningTrack(track.id, track.time, track.plots, truth, sigma)

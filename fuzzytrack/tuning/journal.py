@@ -39,8 +39,8 @@ class Journal:
         Raises
         ------
         ValueError
-            If the file holds a search and `resume` is False, or it is another search; names the
-            difference.
+            If the file holds a search and `resume` is False, there is none to resume, or it is
+            another search; names the difference.
         """
         if path is None:
             if resume:
@@ -48,6 +48,10 @@ class Journal:
             return cls(None, job, [])
         place = Path(path)
         if not place.exists():
+            if resume:
+                raise ValueError(
+                    f"resume: {place} does not exist; leave it out, and a new search begins"
+                )
             return cls(place, job, [])
         if not resume:
             raise ValueError(

@@ -34,11 +34,6 @@ class Search:
         Numbers with the least loss so far.
     best_loss : float
 
-    Raises
-    ------
-    ValueError
-        If the package `cmaes` is not installed.
-
     Notes
     -----
     Hansen (2016), The CMA evolution strategy: a tutorial. It begins with the start of the space
@@ -46,13 +41,8 @@ class Search:
     """
 
     def __init__(self, space: Space, seed: int, trials: int) -> None:
-        try:
-            from cmaes import CMA
-        except ImportError:
-            raise ValueError(
-                "tuning needs the package cmaes, which is not installed; "
-                "pip install 'fuzzytrack[tune]'"
-            ) from None
+        from cmaes import CMA
+
         self.space, self.trials = space, trials
         self.losses: list[float] = []
         self.best, self.best_loss = space.start, math.inf

@@ -81,6 +81,8 @@ class Tuned:
     trials : int
         Trackers that were tried, in all searches.
     seed : int
+    notes : tuple of str
+        What was guessed, left out or put right when the plots were read.
     """
 
     tracker: Tracker
@@ -98,6 +100,7 @@ class Tuned:
     plots: int
     trials: int
     seed: int
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return summary(self, "data", "numbers", "verdict")
@@ -159,6 +162,7 @@ class Tuned:
             "plots": self.plots,
             "trials": self.trials,
             "seed": self.seed,
+            "notes": list(self.notes),
             "numbers": self.numbers,
             "start": self.start,
             "without_effect": list(self.unused),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 import hashlib
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,9 +17,13 @@ from fuzzytrack import specs
 from fuzzytrack.fuzzy.loading import rulebase_path, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.saving import dumps_rulebase
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.recordings.judging import GateWidth
+from fuzzytrack.recordings.tracking import suited
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
 from fuzzytrack.tasks import Progress, run_tasks
+from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import CRITERIA, Criterion, Likelihood
 from fuzzytrack.tuning.data import TuningData, joined, recorded, simulated
@@ -36,7 +40,7 @@ from fuzzytrack.version import __version__
 __all__ = ["Source", "tune"]
 
 #: What data come from; see `tune`.
-Source = TuningData | Scenario | str | os.PathLike[str]
+Source = TuningData | Scenario | str | os.PathLike[str] | Mapping[str, Any]
 
 # Trials of a search: so many, and so many more for each free number.
 _TRIALS, _TRIALS_EACH = 60, 40
@@ -51,12 +55,9 @@ def tune(
     tracker: str | RuleBase,
     *,
     free: Collection[str] | None = None,
-    sigma: float | None = None,
     truth: str | os.PathLike[str] | None = None,
-    time: str | None = None,
-    id: str | None = None,
-    axes: Sequence[str] | None = None,
-    sort: bool = False,
+    gate: GateWidth = "auto",
+    reading: Reading | None = None,
     runs: int = 60,
     seed: int = 0,
     trials: int | None = None,
@@ -66,6 +67,7 @@ def tune(
     state: str | os.PathLike[str] | None = None,
     resume: bool = False,
     progress: Progress | None = None,
+    **options: Any,
 ) -> Tuned:
     """Tune the numbers of a tracker on data, and judge it on data that it was not tuned on.
 
@@ -73,8 +75,8 @@ def tune(
     ----------
     data : TuningData, Scenario, str or path, or sequence of these
         The name of a shipped scenario or a YAML file, whose runs are simulated with their truth; or
-        a file of recorded plots, see `fuzzytrack.io.read_tracks`. Of several each counts alike: the
-        RMS error is then the geometric mean of theirs.
+        recorded plots, as a file or a folder of them, or as columns in memory (a data frame or a
+        mapping). Of several each counts alike: the RMS error is then the geometric mean of theirs.
     tracker : str or RuleBase
         A rule base, by its name or file, or a scheduler or tracker, as
         `fuzzytrack.trackers.catalog.make_tracker` reads it (``imm``,
@@ -85,13 +87,14 @@ def tune(
         (the corners of the sets of inputs), ``normalization`` (the numbers of the scheduler
         settings), one variable, ``lag.ps`` or ``rho``; all of them unless given. Of a scheduler or
         tracker the names of its parameters; unless given, those of its family.
-    sigma : float, optional
-        Standard deviation of recorded plots (m), if the tracker needs it.
     truth : str or path, optional
-        File of the true positions of recorded plots. Without it predictions are compared with the
-        plots.
-    time, id, axes, sort
-        As for `fuzzytrack.io.read_tracks`.
+        True positions of recorded plots: a file with the same columns and identities, or columns of
+        the file of plots with commas between them; see `fuzzytrack.recordings.truth.read_truth`.
+        Without them predictions are compared with the plots.
+    gate : float, "auto" or None
+        Recorded plots that the gate of `fuzzytrack.track` rejects are left out.
+    reading : Reading, optional
+        How recorded plots are read; in place of `options`.
     runs : int
         Number of runs of a scenario.
     seed : int
@@ -113,6 +116,9 @@ def tune(
         Whether to continue the searches whose losses `state` holds, if any.
     progress : callable, optional
         Called with the share of the trials that are done.
+    **options
+        How recorded plots are read, as for `fuzzytrack.track`: time, id, axes, polar, geodetic,
+        sigma… Without `sigma` the standard deviation of the plots is estimated from them.
 
     Returns
     -------
@@ -124,8 +130,10 @@ def tune(
         If the data hold too few plots, or the rule base cannot be read or schedule gains.
     ValueError
         If there is no such tracker, number or criterion, nothing is free or has an effect, the
-        tracker needs `sigma` and there is none, the package ``cmaes`` is missing, or `state` is of
-        another search.
+        tracker needs `sigma` and there is none, `state` is of another search, or there is none to
+        resume.
+    TypeError
+        If there is no such option.
     OSError
         If a file cannot be read or written.
 
@@ -137,9 +145,8 @@ def tune(
     returned was tuned on all data; held-out errors are those of trackers that did not see them.
     """
     judged = _criterion(criterion)
-    found = _data(
-        data, runs, seed, sigma=sigma, truth=truth, time=time, id=id, axes=axes, sort=sort
-    )
+    reading = Reading.of(**options) if reading is None else reading
+    found = _data(data, runs, seed, reading=reading, truth=truth, gate=gate)
     candidates = _candidates(tracker, free, found)
     divided = make_folds(found, folds, seed)
     families = [candidates, *_rivals(candidates, found, judged)]
@@ -181,6 +188,7 @@ def tune(
         plots=int(divided.plots.sum()),
         trials=sum(len(search.losses) for search in searches),
         seed=seed,
+        notes=found.notes,
     )
     return replace(tuned, text=with_head(tuned.text, _head(tuned))) if tuned.is_rulebase else tuned
 
@@ -190,7 +198,7 @@ def tune(
 
 def _data(data: Source | Sequence[Source], runs: int, seed: int, **recording: Any) -> TuningData:
     if isinstance(data, Sequence) and not isinstance(data, str):
-        if not data:
+        if len(data) == 0:
             raise ValueError("data: at least one file or scenario is needed")
         return joined([_data(each, runs, seed, **recording) for each in data])
     if isinstance(data, TuningData):
@@ -209,6 +217,9 @@ def _candidates(
         return rulebase_numbers(dumps_rulebase(tracker), tracker.name, {}, free)
     name, options = specs.split(tracker, "tracker")
     if specs.is_file(name) or name in shipped_rulebases():
+        # As it will be run on such plots.
+        spec, _ = suited(tracker, as_tracker(tracker), axes_differ=data.axes_differ)
+        _, options = specs.split(spec, "tracker")
         path = Path(name) if specs.is_file(name) else rulebase_path(name)
         with open(path, encoding="utf-8", newline="") as stream:
             text = stream.read()
@@ -257,9 +268,10 @@ def _check_start(candidates: Candidates, run: Trials) -> None:
     """Raise ValueError if the tracker where the search begins cannot be judged."""
     tracker: Any = candidates.tracker(candidates.space.start)
     if getattr(tracker, "needs_sigma", False) and not run.data.has_sigma:
+        reasons = "; ".join(run.data.notes)
         raise ValueError(
             f"sigma: {candidates.title} needs the standard deviation of the plots, which the data "
-            "do not have"
+            f"do not have{f' ({reasons})' if reasons else ''}"
         )
     # In plain Python: code for all that a search varies is compiled with the first numbers that do.
     (sums,) = replace(run, compiled=False).sums(candidates, [candidates.space.start])

@@ -126,6 +126,50 @@ def test_what_is_wrong_is_told_in_one_line(fails, plots, words, message):
     assert message in fails("tune", *[plots if w == "plots.csv" else w for w in words])
 
 
-def test_data_without_sigma_are_refused_where_it_is_needed(fails, recorded):
-    line = fails("tune", recorded, "--tracker", "omega-schedule")
+def test_plots_are_read_as_track_reads_them(run, csv, tmp_path):
+    rng = np.random.default_rng(2)
+    rows = ["time,id,range,azimuth"]
+    for id, bearing in (("A", 359.0), ("B", 30.0), ("C", 200.0)):
+        r = 9000 + 40 * np.arange(90) + rng.normal(0, 20, 90)
+        azimuth = bearing + 0.05 * np.arange(90) + rng.normal(0, 0.1, 90)
+        r[50] = 99_999
+        rows += [
+            f"{4 * k},{id},{a:.1f},{b % 360:.3f}"
+            for k, (a, b) in enumerate(zip(r, azimuth, strict=True))
+        ]
+    plots, out = csv("\n".join(rows)), tmp_path / "tuned.yaml"
+    words = ("--polar", "range,azimuth", "--id", "id")
+    # Its noise is estimated, and each axis has its own.
+    words = (*words, "--tracker", "maneuver", "--free", "noise", *QUICK[2:])
+    result = run("tune", plots, *words, "-o", out)
+    assert result.exit_code == 0, result.output
+    assert "3 plots beyond the gate, not used" in result.stderr
+    assert result.stdout.splitlines()[-1] == f"tracker: {out}:axes=own"
+    found = json.loads(run("tune", plots, *words, "--json").stdout)
+    assert found["parameters"] == "axes=own"
+    assert found["notes"] == ["3 plots beyond the gate, not used"]
+    # The start is what `track` runs: the same innovations, from the third plot of each track on.
+    tracked = ft.track(plots, polar=("range", "azimuth"), id="id")
+    assert tracked.spec == "maneuver:axes=own"
+    squares = [(r.innovation[3:] ** 2).sum(axis=1) for r in tracked.results]
+    used = np.delete(np.concatenate(squares), [47, 47 + 87, 47 + 174])
+    start = ft.tune(
+        plots, "maneuver", polar=("range", "azimuth"), id="id", free=["noise"], trials=1, folds=3
+    ).rows[0]
+    assert start.held_out == pytest.approx(np.sqrt(used.mean()), rel=0.03)
+
+
+def test_data_without_sigma_are_refused_where_it_is_needed(fails, csv):
+    # Every second plot repeats the one before: there is no noise to be seen.
+    rows = [f"{k},{40 * (k // 2)},0" for k in range(480)]
+    plots = csv("\n".join(["t,x,y", *rows]))
+    line = fails("tune", plots, "--tracker", "omega-schedule")
     assert line.startswith("error: --sigma: omega-schedule needs the standard deviation")
+    assert "repeat the one before, so that their noise cannot be estimated" in line
+
+
+def test_a_search_that_is_not_there_cannot_be_resumed(fails, recorded, tmp_path):
+    state = tmp_path / "none.json"
+    line = fails("tune", recorded, "--tracker", "fixed", "--state", state, "--resume")
+    assert line.startswith(f"error: --resume: {state} does not exist")
+    assert not state.exists()

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from fuzzytrack import DataError
+from fuzzytrack.io import Reading
 from fuzzytrack.simulation.scenario_files import load_scenario, loads_scenario
-from fuzzytrack.tuning.data import TuningData, TuningTrack, recorded, simulated
+from fuzzytrack.tuning.data import TuningData, TuningTrack, joined, recorded, simulated
 from fuzzytrack.tuning.folds import make_folds
 
 RNG = np.random.default_rng(8)
@@ -100,30 +101,61 @@ def test_runs_of_a_scenario_have_their_own_times():
         np.testing.assert_array_equal(one.truth, scenario.position[:, k % 3])
 
 
-def test_recorded_plots_with_and_without_truth(tmp_path):
+def reading(**options):
+    return Reading.of(**{"id": "id", **options})
+
+
+def test_recorded_plots_have_their_noise_given_or_estimated(tmp_path):
+    rng = np.random.default_rng(4)
     rows = ["t,id,x,y"]
-    rows += [f"{k},{id},{k * 2},{k % 7}" for id in "ab" for k in range(250)]
+    for id in "ab":
+        noise = rng.normal(0, (2, 8), (250, 2))
+        rows += [f"{k},{id},{k * 2 + dx:.4f},{k + dy:.4f}" for k, (dx, dy) in enumerate(noise)]
     plots = tmp_path / "plots.csv"
     plots.write_text("\n".join(rows))
-    data = recorded(plots, id="id", sigma=2.0)
-    assert not data.has_truth
+    data = recorded(plots, reading(sigma=2.0))
+    assert (data.has_truth, data.axes_differ, data.name) == (False, False, str(plots))
     assert data.tracks[1].sigma.tolist() == [[2.0, 2.0]] * 250
-    truth = tmp_path / "truth.csv"
-    truth.write_text("t,id,x,y\n10,a,21,1\n12,a,25,2\n0,b,0,0\n500,b,1000,0\n")
-    data = recorded(plots, id="id", truth=truth)
-    np.testing.assert_array_equal(data.tracks[0].truth[9:13, 0], [np.nan, 21, 23, 25])
-    assert data.tracks[0].scored.sum() == 3
-    assert data.tracks[1].truth[7, 0] == 14
-    truth.write_text("t,id,x,y\n10,a,21,1\n")
-    with pytest.raises(DataError, match=r"truth\.csv: has no track 'b', for which there are plots"):
-        recorded(plots, id="id", truth=truth)
-    # The truth can be in columns of the same file.
-    columns = recorded(plots, id="id", truth="y, x")
-    np.testing.assert_array_equal(columns.tracks[1].truth, columns.tracks[1].plots[:, ::-1])
-    with pytest.raises(DataError, match=r"truth: there is no file yy,x, and .* no column 'yy'"):
-        recorded(plots, id="id", truth="yy,x")
-    truth.write_text("t,id,x,y,z\n10,a,21,1,0\n10,b,21,1,0\n")
-    with pytest.raises(DataError, match=r"truth\.csv: has 3 axes, the plots have 2"):
-        recorded(plots, id="id", truth=truth)
-    with pytest.raises(ValueError, match="sigma must be > 0, got -1"):
-        recorded(plots, id="id", sigma=-1)
+    data = recorded(plots, reading())
+    assert data.axes_differ
+    np.testing.assert_allclose(data.tracks[0].sigma[7], [2, 8], rtol=0.15)
+    with pytest.raises(ValueError, match="sigma: must be > 0, got -1"):
+        recorded(plots, reading(sigma=-1))
+
+
+def test_plots_beyond_the_gate_are_missed(tmp_path):
+    rng = np.random.default_rng(4)
+    x = 3.0 * np.arange(300) + rng.normal(0, 1, 300)
+    x[100] += 500
+    x[200:] += 1e5
+    data = recorded({"t": np.arange(300), "x": x}, Reading.of())
+    assert [len(track.time) for track in data.tracks] == [203, 97]
+    assert np.isnan(data.tracks[0].plots).nonzero()[0].tolist() == [100, 200, 201, 202]
+    assert data.notes == (
+        "4 plots beyond the gate, not used",
+        "1 track started again after several of these",
+    )
+    (whole,) = recorded({"t": np.arange(300), "x": x}, Reading.of(), gate=None).tracks
+    np.testing.assert_array_equal(whole.plots[:, 0], x)
+
+
+def test_bare_angles_have_no_jumps(tmp_path):
+    k = np.arange(300)
+    rng = np.random.default_rng(4)
+    course = 350 + 0.1 * k
+    columns = {"t": k, "heading": (course + rng.normal(0, 0.5, 300)) % 360, "true": course % 360}
+    data = recorded(columns, Reading.of(angle="heading"), truth="true")
+    (one,) = data.tracks
+    np.testing.assert_allclose(one.plots[:, 0], course, atol=3)
+    np.testing.assert_allclose(one.truth[:, 0], course, atol=1e-9)
+    assert data.noise == pytest.approx(0.5, rel=0.15)
+
+
+def test_notes_and_noise_of_several_recordings_are_joined():
+    rng = np.random.default_rng(4)
+    columns = {"t": np.arange(300), "x": 3.0 * np.arange(300) + rng.normal(0, 1, 300)}
+    spiked = {**columns, "x": np.where(np.arange(300) == 100, 1e4, columns["x"])}
+    data = joined([recorded(columns), recorded(spiked)])
+    assert data.notes == ("plots: 1 plot beyond the gate, not used",)
+    assert [track.group for track in data.tracks] == [0, 1]
+    assert not data.axes_differ

@@ -1,8 +1,6 @@
 import math
-import sys
 
 import numpy as np
-import pytest
 
 from fuzzytrack.tuning.parameters import Parameter, Space
 from fuzzytrack.tuning.search import Search
@@ -56,9 +54,3 @@ def test_what_is_told_again_continues_where_it_was():
     assert run(continued).losses == whole.losses
     assert continued.best == whole.best
     assert run(Search(SPACE, seed=6, trials=60)).losses != whole.losses
-
-
-def test_a_missing_package_is_named(monkeypatch):
-    monkeypatch.setitem(sys.modules, "cmaes", None)
-    with pytest.raises(ValueError, match=r"package cmaes, .* pip install 'fuzzytrack\[tune\]'"):
-        Search(SPACE, seed=0, trials=5)

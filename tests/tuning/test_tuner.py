@@ -191,8 +191,6 @@ def test_recorded_plots_without_truth_are_compared_with_themselves(tmp_path):
     assert found.objective == "RMS of innovations"
     # Without a sigma, the Kalman filter has an estimate of it.
     assert math.isfinite(found.rows[1].held_out)
-    with pytest.raises(ValueError, match="sigma: omega-schedule needs the standard deviation of"):
-        ft.tune(path, "omega-schedule", trials=8)
     with pytest.raises(
         ValueError, match="output: a tuned tracker of this kind has no file; type f"
     ):
