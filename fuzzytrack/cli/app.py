@@ -55,7 +55,7 @@ COMMANDS = {
         "reproduce:reproduce",
         "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
-    "rulebase": ("rulebase:rulebase", "List, show, check, explain and edit rule bases."),
+    "rulebase": ("rulebase:rulebase", "List, show, copy, check, explain and edit rule bases."),
     "design": ("design:design", "Compute gains by a design rule, and show their properties."),
     "cache": ("cache:cache", "Show where compiled code is kept and how much of it, or remove it."),
 }

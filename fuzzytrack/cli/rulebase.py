@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,7 +14,13 @@ from fuzzytrack.cli.output import print_json, print_table, say
 from fuzzytrack.cli.rulebase_tables import print_explanation, print_rulebase, review_lines
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.as_json import rulebase_as_json
-from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path, shipped_rulebases
+from fuzzytrack.fuzzy.loading import (
+    SCHEMA_FILE,
+    load_rulebase,
+    loads_rulebase,
+    rulebase_path,
+    shipped_rulebases,
+)
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.schedulers.review import Review, explanation, review
 
@@ -22,7 +29,7 @@ __all__ = ["rulebase"]
 rulebase = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="List, show, check, explain and edit rule bases.",
+    help="List, show, copy, check, explain and edit rule bases.",
     rich_markup_mode=None,
 )
 
@@ -120,6 +127,59 @@ def explain(
         print_explanation(system, found)
 
 
+@rulebase.command()
+def new(
+    origin: Annotated[
+        str, typer.Argument(metavar="FROM", help="Shipped name, or file, to be copied.")
+    ],
+    output: Annotated[
+        str, typer.Option("--output", "-o", metavar="MINE.yaml", help="The copy; named after it.")
+    ],
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    json: options.Json = False,
+) -> None:
+    """Copy a rule base to a file to be edited, with its JSON Schema for editors beside it."""
+    from fuzzytrack.fuzzy.copying import copied_rulebase
+    from fuzzytrack.io.files import check_output, whole_file
+
+    source, target = rulebase_path(origin), Path(output)
+    if target.suffix not in (".yaml", ".yml"):
+        raise ValueError(f"--output: {output} must end in .yaml, the suffix of rule bases")
+    load_rulebase(origin)  # its messages are about a file that may not exist
+    copy = copied_rulebase(source.read_bytes().decode("utf-8"), target.stem, str(source))
+    check_output(target, (source,))
+    if target.exists() and not force:
+        raise FileExistsError(None, "exists; name another file, or replace it with --force", output)
+    with whole_file(target) as draft:
+        draft.write_bytes(copy.encode("utf-8"))
+    beside = target.with_name(SCHEMA_FILE)
+    kept = beside.exists() and not force and beside.read_text("utf-8") != _schema_text()
+    if not kept:
+        with whole_file(beside) as draft:
+            draft.write_text(_schema_text(), encoding="utf-8")
+    if json:
+        print_json({"from": str(source), "file": output, "schema": str(beside), "kept": kept})
+        return
+    say(f"wrote {output}")
+    if kept:
+        say(f"kept {beside}, which differs from the schema of this version; --force replaces it")
+    else:
+        say(f"wrote {beside}: editors complete and check by it (in VS Code: extension YAML)")
+    _next_steps(output)
+
+
+def _next_steps(file: str) -> None:
+    """Print what is done with a new rule base."""
+    name, rules = shlex.quote(file), load_rulebase(file)
+    say("Next, after each change:")
+    say(f"  fuzzytrack rulebase check {name}")
+    # The first two inputs are drawn; the others need a value.
+    others = ",".join(f"{variable}=0" for variable in rules.input_names[2:])
+    say(f"  fuzzytrack surface {name}{others and f' --at {others}'} -o surface.png")
+    if review(rules).schedules:
+        say(f"  fuzzytrack track plots.csv --tracker {name}")
+
+
 @rulebase.command("set")
 def set_(
     file: Annotated[str, typer.Argument(metavar="FILE", help="The rule base.")],
@@ -169,10 +229,7 @@ def schema(
     ] = None,
 ) -> None:
     """Print the JSON Schema of rule-base files, for editors."""
-    from fuzzytrack.fuzzy.schema import dumps_schema
-    from fuzzytrack.schedulers.settings import scheduler_schema
-
-    text = dumps_schema(scheduler_schema())
+    text = _schema_text()
     if output is None:
         say(text.rstrip())
         return
@@ -181,3 +238,10 @@ def schema(
     with whole_file(output) as draft:
         draft.write_text(text, encoding="utf-8")
     say(f"wrote {output}")
+
+
+def _schema_text() -> str:
+    from fuzzytrack.fuzzy.schema import dumps_schema
+    from fuzzytrack.schedulers.settings import scheduler_schema
+
+    return dumps_schema(scheduler_schema())

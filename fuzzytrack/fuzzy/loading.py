@@ -11,8 +11,16 @@ from fuzzytrack.fuzzy.rulebase import RuleBase, remember_origin
 from fuzzytrack.shipped import Shipped
 from fuzzytrack.yamltree import Document
 
-__all__ = ["as_rulebase", "load_rulebase", "loads_rulebase", "rulebase_path", "shipped_rulebases"]
+__all__ = [
+    "SCHEMA_FILE",
+    "as_rulebase",
+    "load_rulebase",
+    "loads_rulebase",
+    "rulebase_path",
+    "shipped_rulebases",
+]
 
+#: File of the JSON Schema, beside the rule bases that name it.
 SCHEMA_FILE = "rulebase.schema.json"
 
 _OTHERS = {".fis": "MATLAB's Fuzzy Logic Toolbox", ".fll": "fuzzylite", ".fcl": "IEC 61131-7"}

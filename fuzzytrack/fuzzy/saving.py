@@ -13,7 +13,7 @@ from pathlib import Path
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.cells import CellReader
-from fuzzytrack.fuzzy.loading import loads_rulebase
+from fuzzytrack.fuzzy.loading import SCHEMA_FILE, loads_rulebase
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.reader import FORMAT_VERSION, Reader
 from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase, TableLayout
@@ -21,9 +21,10 @@ from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.yamltree import Document, Node, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode
 
-__all__ = ["dumps_rulebase", "save_rulebase", "set_cell"]
+__all__ = ["SCHEMA_LINE", "dumps_rulebase", "save_rulebase", "set_cell", "yaml_text"]
 
-_HEADER = "# yaml-language-server: $schema=rulebase.schema.json"
+#: First line of a file: where editors find its JSON Schema.
+SCHEMA_LINE = f"# yaml-language-server: $schema={SCHEMA_FILE}"
 _WIDTH = 96
 
 _PLAIN_WORD = re.compile(r"[^\W\d](?:[\w.@-]*[\w@])?")
@@ -100,7 +101,7 @@ def _mode(target: Path) -> int:
 
 
 def _lines(rules: RuleBase) -> Iterator[str]:
-    yield _HEADER
+    yield SCHEMA_LINE
     yield f"rulebase: {FORMAT_VERSION}"
     for key in ("name", "description", "source"):
         if getattr(rules, key):
@@ -128,7 +129,7 @@ def _lines(rules: RuleBase) -> Iterator[str]:
 def _prose(key: str, text: str) -> Iterator[str]:
     """Long text folded over several lines, other text on one line."""
     if len(text) < _WIDTH - len(key) or text != " ".join(text.split()):
-        yield f"{key}: {_text(text)}"
+        yield f"{key}: {yaml_text(text)}"
         return
     yield f"{key}: >-"
     lines = textwrap.wrap(text, _WIDTH, break_long_words=False, break_on_hyphens=False)
@@ -139,7 +140,7 @@ def _variable(variable: Variable) -> Iterator[str]:
     yield f"  {_word(variable.name)}:"
     for key in ("label", "unit"):
         if getattr(variable, key):
-            yield f"    {key}: {_text(getattr(variable, key))}"
+            yield f"    {key}: {yaml_text(getattr(variable, key))}"
     yield f"    universe: {_universe(variable.universe)}"
     if variable.default is not None:
         yield f"    default: {_number(variable.default)}"
@@ -277,7 +278,7 @@ def _word(word: str) -> str:
     return word if plain else json.dumps(word, ensure_ascii=False)
 
 
-def _text(text: str) -> str:
+def yaml_text(text: str) -> str:
     """Write running text in a block, in quotes where it needs them."""
     plain = _PLAIN_TEXT.fullmatch(text) and text.casefold() not in _NOT_WORDS
     return text if plain else json.dumps(text, ensure_ascii=False)

@@ -1,5 +1,6 @@
 import csv as csvlib
 import json
+import shlex
 
 import numpy as np
 import pytest
@@ -387,3 +388,73 @@ def test_explain_tells_underflow_from_a_hole(run, csv):
     hole = csv(hole.replace("gaussmf: [8, 0.1]", "trimf: [7, 8, 8]"), "hole.yaml")
     silent = run("rulebase", "explain", hole, "--at", "p=4,q=3").stdout
     assert silent.startswith("no rule fires here\n")
+
+
+# -------------------------------------------------------------------- new
+
+
+def test_new_writes_a_copy_its_schema_and_the_next_steps(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("rulebase", "new", "stiffness-damping", "-o", "my rules.yaml")
+    assert result.exit_code == 0, result.stderr
+    copy = load_rulebase(tmp_path / "my rules.yaml")
+    assert copy.name == "my rules"
+    assert copy.rules == load_rulebase("stiffness-damping").rules
+    schema = tmp_path / "rulebase.schema.json"
+    assert json.loads(schema.read_text()) == json.loads(dumps_schema(scheduler_schema()))
+    steps = [line.strip() for line in result.stdout.splitlines() if line.startswith("  ")]
+    assert [step.split("'")[0] for step in steps] == [
+        "fuzzytrack rulebase check ",
+        "fuzzytrack surface ",
+        "fuzzytrack track plots.csv --tracker ",
+    ]
+    for step in steps[:2]:
+        assert run(*shlex.split(step)[1:]).exit_code == 0
+
+
+def test_a_rule_base_that_gives_no_gains_is_not_said_to_track(run, tmp_path):
+    result = run("rulebase", "new", "tipper", "-o", tmp_path / "mine.yaml")
+    assert "surface" in result.stdout
+    assert "track plots.csv" not in result.stdout
+
+
+def test_inputs_after_the_second_get_a_value_in_the_next_steps(run, csv):
+    three = csv(LIST, "three.yaml")
+    result = run("rulebase", "new", three, "-o", three.parent / "mine.yaml")
+    assert "--at c=0 -o surface.png" in result.stdout
+
+
+def test_new_overwrites_nothing_unless_forced(run, fails, tmp_path):
+    mine, schema = tmp_path / "mine.yaml", tmp_path / "rulebase.schema.json"
+    mine.write_text("mine")
+    assert fails("rulebase", "new", "tipper", "-o", mine) == (
+        f"error: {mine}: exists; name another file, or replace it with --force"
+    )
+    assert mine.read_text() == "mine"
+    assert not schema.exists()
+    schema.write_text("{}")
+    other = tmp_path / "other.yaml"
+    assert f"kept {schema}, which differs" in run("rulebase", "new", "tipper", "-o", other).stdout
+    assert schema.read_text() == "{}"
+    found = json.loads(run("rulebase", "new", "tipper", "-o", mine, "--force", "--json").stdout)
+    assert (found["file"], found["kept"]) == (str(mine), False)
+    assert load_rulebase(mine).name == "mine"
+    assert schema.read_text() == dumps_schema(scheduler_schema())
+    # The schema of this version is no obstacle.
+    again = run("rulebase", "new", "tipper", "-o", tmp_path / "third.yml")
+    assert f"wrote {schema}" in again.stdout
+
+
+@pytest.mark.parametrize(
+    ("origin", "output", "message"),
+    [
+        ("tiper", "mine.yaml", "unknown rule base 'tiper'; did you mean 'tipper'?"),
+        ("tipper", "mine.txt", "--output: mine.txt must end in .yaml, the suffix of rule bases"),
+        ("tipper", "no/mine.yaml", "there is no folder"),
+        ("no.yaml", "mine.yaml", "cannot read rule base 'no.yaml'"),
+    ],
+)
+def test_a_mistake_in_new_is_one_line(fails, tmp_path, monkeypatch, origin, output, message):
+    monkeypatch.chdir(tmp_path)
+    assert message in fails("rulebase", "new", origin, "-o", output)
+    assert list(tmp_path.iterdir()) == []
