@@ -37,6 +37,21 @@ _BEST = 10
 _FAR, _LOST = 3.0, 1000.0
 # Variants of the first table; the others are in the second.
 _REGULAR = (CONSTANT, "T=.5", "T=2", "Pd.9", "Pd.7", "Pd.5", "Pd.3")
+# What the home page and README.md show: trackers and variants as these pages call them.
+_SUMMARY_ROWS = {
+    "imm-three": "`imm-three`, three Kalman filters side by side",
+    "maneuver": "`maneuver`, a rule base with a covariance behind it",
+    "omega-schedule": "`omega-schedule`, a rule base of six numbers",
+    FIXED: "fixed gains, tuned",
+    f"{FIXED} + period": "fixed gains, tuned, converted to each interval",
+    KALMAN: "Kalman filter, tuned",
+    "stiffness-damping": "`stiffness-damping`, the published rule base",
+}
+_SUMMARY_COLUMNS = {
+    "regular plots": CONSTANT,
+    "irregular times": "jitter",
+    "30 % of plots missed": "Pd.7",
+}
 
 Table = list[list[str]]
 
@@ -195,6 +210,7 @@ def main(arguments: list[str] | None = None) -> int:
         text = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
         (ROOT / "docs" / "ranking.json").write_text(f"{text}\n")
         (ROOT / "docs" / "ranking-tables.txt").write_text(described(found))
+        (ROOT / "docs" / "ranking-summary.txt").write_text(summary(found))
     return 0
 
 
@@ -220,6 +236,21 @@ def described(found: Mapping[str, Any]) -> str:
     seed = found["rankings"][0]["seed"]
     tables = "\n".join(markdown(table) for table in parts(found))
     return f"*Measured on {how}; seed {seed}.*\n\n{tables}"
+
+
+def summary(found: Mapping[str, Any]) -> str:
+    """A short table in Markdown: a few trackers, the best first, against the Kalman filter."""
+    table = changes(found, KALMAN)
+    rows = [["Error of predictions, against a Kalman filter (%)", *_SUMMARY_COLUMNS]]
+    for name in filter(_SUMMARY_ROWS.get, ordered(found)):
+        figures = (table[name][column][0] for column in _SUMMARY_COLUMNS.values())
+        rows.append(
+            [
+                _SUMMARY_ROWS[name],
+                *(shown([figure, None], 0) if figure else "0" for figure in figures),
+            ]
+        )
+    return markdown(rows)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,10 @@
 """Sphinx configuration; the build uses no network."""
 
 import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
 # The gallery draws, and must not wait for a display.
 os.environ.setdefault("MPLBACKEND", "Agg")
@@ -22,20 +26,29 @@ version = release = fuzzytrack.__version__
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
+    "mathml",
     "numpydoc",
     "myst_parser",
+    "sphinx_design",
     "sphinx_gallery.gen_gallery",
 ]
 templates_path = ["_templates"]
-exclude_patterns = ["_build", "gallery/**/*.ipynb", "gallery/**/*.py", "gallery/**/*.codeobj.json"]
+exclude_patterns = [
+    "_build",
+    "_extensions",
+    "gallery/**/*.ipynb",
+    "gallery/**/*.py",
+    "gallery/**/*.codeobj.json",
+]
 nitpicky = False
 
 # Pages are Markdown; the API pages are reStructuredText, as docstrings are.
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-myst_enable_extensions = ["deflist", "dollarmath"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
+
+html_math_renderer = "mathml"
 
 autosummary_generate = True
 autodoc_member_order = "bysource"
@@ -54,15 +67,25 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "show_memory": False,
     "min_reported_time": 5,
+    # Its tables of times load scripts from the network.
+    "write_computation_times": False,
 }
 
 html_theme = "pydata_sphinx_theme"
 html_title = "fuzzytrack"
+html_logo = "_static/logo.svg"
+html_favicon = "_static/logo.svg"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_theme_options = {
     "logo": {"text": "fuzzytrack"},
     "navigation_with_keys": False,
     "show_toc_level": 2,
-    "header_links_before_dropdown": 6,
+    # As many as docs/index.md names, on one line at 1280 pixels.
+    "header_links_before_dropdown": 7,
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": []},
+    "footer_start": ["copyright"],
+    "footer_end": [],
 }
 html_sidebars = {"index": []}
 html_copy_source = False
