@@ -28,6 +28,7 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.viewcode",
     "mathml",
+    "pictures",
     "numpydoc",
     "myst_parser",
     "sphinx_design",

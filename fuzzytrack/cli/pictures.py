@@ -59,7 +59,9 @@ def save_picture(
         plt.close(figure)
 
 
-def surfaces(system: FuzzySystem, points: int, at: dict[str, float] | None = None) -> Figure:
+def surfaces(
+    system: FuzzySystem, points: int, at: dict[str, float] | None = None, *, style: str = "surface"
+) -> Figure:
     """Surfaces of all outputs; under them α and β, where the outputs are no gains but give them."""
     from matplotlib.figure import Figure
 
@@ -68,12 +70,13 @@ def surfaces(system: FuzzySystem, points: int, at: dict[str, float] | None = Non
 
     gains = find_gain_outputs(system.rules.output_names)
     if at or gains is None or gains.setting == "direct":
-        return plot_surface(system, points=points, at=at)[0]
-    figure = Figure(figsize=(10.0, 8.8), layout="constrained")
-    flat = len(system.rules.inputs) == 1
+        return plot_surface(system, points=points, at=at, style=style)[0]
+    figure = Figure(figsize=(11.2, 8.8), layout="constrained")
+    flat = style == "contour" or len(system.rules.inputs) == 1
     axes = figure.subplots(2, 2, subplot_kw=None if flat else {"projection": "3d"})
     if len(system.rules.outputs) == 1:
         axes[0, 1].remove()
-    plot_surface(system, points=points, axes=axes[0, : len(system.rules.outputs)])
-    plot_gain_surfaces(system, points=points, axes=axes[1])
+    outputs = axes[0, : len(system.rules.outputs)]
+    plot_surface(system, points=points, style=style, axes=outputs)
+    plot_gain_surfaces(system, points=points, style=style, axes=axes[1])
     return figure

@@ -30,7 +30,18 @@ def surface(
     csv: Annotated[
         str | None, typer.Option(metavar="FILE.csv", help="Write it, one row for each grid point.")
     ] = None,
-    points: Annotated[int, typer.Option(min=2, max=MAX_POINTS, help="Points on each axis.")] = 101,
+    contour: Annotated[
+        bool, typer.Option("--contour", help="Draw a contour map, not a surface in perspective.")
+    ] = False,
+    points: Annotated[
+        int,
+        typer.Option(
+            min=2, max=MAX_POINTS, help="Points on each axis; corners of the sets are added."
+        ),
+    ] = 101,
+    even: Annotated[
+        bool, typer.Option("--even", help="Write --csv without the corners of the sets.")
+    ] = False,
     method: Annotated[str, typer.Option(metavar="M", help="exact, relation or table.")] = "exact",
     at: Annotated[
         str | None,
@@ -50,24 +61,30 @@ def surface(
     fixed = {} if at is None else options.numbers_at(at, others)
     if output is not None:
         check_picture(output)
-    table = _written(system, points, fixed, csv)
+    if contour and (output is None or len(system.rules.inputs) == 1):
+        needs = "-o FILE, the picture" if output is None else "two inputs; one gives a curve"
+        raise ValueError(f"--contour needs {needs}")
+    if even and csv is None:
+        raise ValueError("--even needs --csv FILE, the table that it is about")
+    table = _written(system, points, fixed, csv, corners=not even)
     if output is not None:
-        save_picture(output, lambda: surfaces(system, points, fixed or None))
+        style = "contour" if contour else "surface"
+        save_picture(output, lambda: surfaces(system, points, fixed or None, style=style))
     _print_ranges(system, table)
     for written in filter(None, (output, csv)):
         say(f"wrote {written}")
 
 
 def _written(
-    system: FuzzySystem, points: int, fixed: dict[str, float], csv: str | None
+    system: FuzzySystem, points: int, fixed: dict[str, float], csv: str | None, *, corners: bool
 ) -> dict[str, Array]:
     """Table over the grid; written, if there is a file for it."""
     if csv is None:
-        return grid_table(system, points, fixed)
+        return grid_table(system, points, fixed, corners=corners)
     from fuzzytrack.io.formats import check_table, write_table
 
     check_table(csv)
-    table = grid_table(system, points, fixed)
+    table = grid_table(system, points, fixed, corners=corners)
     write_table(csv, table)
     return table
 

@@ -378,6 +378,7 @@ class FuzzySystem:
         *,
         inputs: tuple[str, str] | None = None,
         at: Mapping[str, float] | None = None,
+        corners: bool = False,
     ) -> Surface:
         """Control surface of one output over two inputs.
 
@@ -391,6 +392,8 @@ class FuzzySystem:
             The two inputs; the first two unless given.
         at : mapping, optional
             Values of the other inputs.
+        corners : bool
+            Whether the points include every corner of the sets, see `Variable.nodes`.
 
         Returns
         -------
@@ -410,7 +413,7 @@ class FuzzySystem:
             raise ValueError(f"surface: points must be at least 2, got {points}")
         if len(names) != 2 or names[0] == names[1]:
             raise ValueError(f"surface: inputs must be two different inputs, got {names}")
-        universes = [self.rules.input(name).universe for name in names]
+        variables = [self.rules.input(name) for name in names]
         fixed = dict(at or {})
         others = [name for name in self.rules.input_names if name not in names]
         if set(fixed) != set(others):
@@ -418,7 +421,7 @@ class FuzzySystem:
                 f"surface: at must give {', '.join(others) or 'nothing'}; "
                 f"got {', '.join(fixed) or 'nothing'}"
             )
-        axes = [np.linspace(u.low, u.high, points) for u in universes]
+        axes = [v.nodes(points, corners=corners) for v in variables]
         grid = dict(zip(names, np.meshgrid(*axes, indexing="ij"), strict=True))
         values = self(**grid, **fixed)[output]
         return Surface(names[0], names[1], output, axes[0], axes[1], np.asarray(values))

@@ -98,6 +98,10 @@ class Universe:
         return np.clip(x, self.low, self.high)
 
 
+# Change of a membership from one float to the next from which it is a jump.
+_JUMP = 1e-3
+
+
 @dataclass(frozen=True)
 class Variable:
     """Linguistic variable: an input or output of a fuzzy system.
@@ -220,6 +224,41 @@ class Variable:
                     grades[row] = 0.0
                     grades[row, self.universe.nearest(np.asarray(fuzzy_set.parameters[0]))] = 1.0
         return grades
+
+    def nodes(self, points: int, *, corners: bool = True) -> NDArray[np.float64]:
+        """Points of the universe: evenly spaced ones, and every corner of its sets.
+
+        Between them all sets are smooth, so that what is drawn on them has its corners where they
+        are. Where a set jumps, the points next to the jump are among them.
+
+        Parameters
+        ----------
+        points : int
+            How many are evenly spaced.
+        corners : bool
+            False leaves out the corners.
+
+        Returns
+        -------
+        ndarray, shape (n_nodes,)
+            Ascending, from one end of the universe to the other.
+        """
+        low, high = self.universe.low, self.universe.high
+        even = np.linspace(low, high, points)
+        if not corners:
+            return even
+        exact = {low, high}
+        for each in self.sets:
+            inside = np.array([p for p in each.breakpoints() if low <= p <= high])
+            exact.update(inside.tolist())
+            for end in (low, high):
+                beside = np.nextafter(inside, end)
+                jumps = np.abs(each.membership(beside) - each.membership(inside)) > _JUMP
+                exact.update(beside[jumps].tolist())
+        ends = np.array(sorted(exact))
+        # An even point that rounding has put beside a corner is left out.
+        apart = np.abs(even[:, None] - ends).min(axis=1) > 1e-9 * (high - low)
+        return np.union1d(ends, even[apart])
 
     def centers(self) -> NDArray[np.float64]:
         """Centers of the sets, shape (n_sets,)."""

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from fuzzytrack.fuzzy.loading import as_rulebase
@@ -36,7 +36,10 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 INK, GRAY = "0.15", "0.55"
 # Perceptually uniform, readable in gray and with any color vision.
 COLORMAP = "viridis"
-PLAIN = FuncFormatter(lambda value, _: f"{value:.4g}")
+# With the minus sign of matplotlib's own labels.
+PLAIN = FuncFormatter(lambda value, _: f"{value:.4g}".replace("-", "\N{MINUS SIGN}"))
+# Dashes of curves, by their number.
+STYLES = ("-", "--", "-.", ":")
 
 
 def choice(name: str, value: object, allowed: Sequence[str]) -> None:
@@ -76,6 +79,9 @@ def panels(
             subplot_kw={"projection": "3d"} if three_d else None,
             **subplots,
         )
+        if rows > 1:
+            # Else titles are read as the labels of the axes above them.
+            figure.get_layout_engine().set(h_pad=0.1)
         for spare in grid.ravel()[count:]:
             spare.remove()
         return figure, grid.ravel()[:count]
@@ -105,9 +111,9 @@ def legend_below(ax: Axes) -> None:
     handles, labels = ax.get_legend_handles_labels()
     box, figure = ax.get_position(), figure_of(ax)
     width, height = box.width * figure.get_figwidth() * 72, box.height * figure.get_figheight() * 72
-    # Widths in points: of a letter, and of the line before the words. The legend may be a little
-    # wider than the axes.
-    columns = max(1, int(1.15 * width / (5.0 * max(map(len, labels)) + 42)))
+    # Widths in points: of a letter, and of the line before the words. The legend may be wider
+    # than the axes, since there is room under the labels of the y axis.
+    columns = max(1, int(1.3 * width / (5.0 * max(map(len, labels)) + 42)))
     rows = -(-len(handles) // columns)
     ax.legend(
         loc="upper center",
@@ -122,7 +128,7 @@ def legend_below(ax: Axes) -> None:
 def ticks(low: float, high: float, count: int) -> list[float]:
     """About `count` round numbers, and both ends."""
     inside = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-    apart = 0.09 * (high - low)
+    apart = 0.12 * (high - low)
     # Exactly zero, without the rounding error of a sum of steps.
     tiny = 1e-9 * (high - low)
     between = [0.0 if abs(t) < tiny else float(t) for t in inside if low + apart < t < high - apart]
@@ -135,6 +141,31 @@ def span_axis(ax: Axes, which: str, low: float, high: float, count: int = 6) -> 
     getattr(ax, f"set_{which}lim")(low, high)
     axis.set_major_locator(FixedLocator(ticks(low, high, count)))
     axis.set_major_formatter(PLAIN)
+
+
+class _Decades(LogLocator):
+    """Ticks at powers of ten; at 1, 2 and 5 times these where there are few."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        self.set_params(subs=(1.0, 2.0, 5.0) if vmax < 30 * vmin else (1.0,))
+        return super().tick_values(vmin, vmax)
+
+
+def _decade(value: float, _: object) -> str:
+    """Plain number, as long as it is short."""
+    if 1e-4 <= value < 1e6:
+        return f"{value:.10g}"
+    return rf"$10^{{{round(np.log10(value))}}}$" if value > 0 else ""
+
+
+def log_axis(ax: Axes, *which: str) -> None:
+    """Logarithmic axes with plain numbers: 0.1, 1, 10; none between powers of ten if many."""
+    for name in which:
+        getattr(ax, f"set_{name}scale")("log")
+        axis = getattr(ax, f"{name}axis")
+        axis.set_major_locator(_Decades())
+        axis.set_major_formatter(FuncFormatter(_decade))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def finish(ax: Axes) -> None:

@@ -20,7 +20,6 @@ from fuzzytrack.plotting._triangle import graded, increasing, label_crests, tria
 __all__ = ["plot_circle_cost", "plot_circle_gains"]
 
 Order = Literal[2, 3]
-STYLES = ("-", "--", "-.", ":")
 
 
 def plot_circle_cost(
@@ -133,33 +132,39 @@ def plot_circle_gains(
         except ValueError:  # the minimum has vanished
             continue
         rows[k], best[k] = found.gains, found.is_global
+    # Lines have a gap where the best gains jump from some γ to none.
+    jumps = np.flatnonzero(np.diff(rows[:, 2] > 0)) + 1
+    weights, best = np.insert(weights, jumps, weights[jumps]), np.insert(best, jumps, False)
+    rows = np.insert(rows, jumps, np.nan, axis=0)
     # The thick line ends where the minimum is no longer the least cost.
     thick = np.where(best[:, None], rows, np.nan)
     figure, (left, right) = shared.panels("axes", axes, 2, columns=2, size=(5.2, 4.6))
     for number, name in enumerate(("α", "β", "γ")[:order]):
-        style: dict[str, Any] = {"color": shared.COLORS[number], "linestyle": STYLES[number]}
+        style: dict[str, Any] = {"color": shared.COLORS[number], "linestyle": shared.STYLES[number]}
         left.plot(weights, rows[:, number], linewidth=0.9, **style)
         left.plot(weights, thick[:, number], linewidth=2.2, label=name, **style)
-    left.set(
-        xscale="log", ylim=(0, None), xlabel="weight of the noise κσ² (m²)", ylabel="optimal gains"
-    )
+    left.set(ylim=(0, None), xlabel="weight of the noise κσ² (m²)", ylabel="optimal gains")
+    shared.log_axis(left, "x")
     shared.finish(left)
     shared.legend_below(left)
-    triangle(right, limits=(1.05, 2.1))
+    known = rows[~np.isnan(rows[:, 0])]
+    reach = (1.1 * float(known[:, 0].max()), 1.3 * float(known[:, 1].max()))
+    triangle(right, limits=(min(2.06, reach[0]), min(4.12, reach[1])))
     right.plot(rows[:, 0], rows[:, 1], color=shared.BLUE, lw=0.9, label="a minimum, not the least")
     right.plot(thick[:, 0], thick[:, 1], color=shared.BLUE, linewidth=2.2, label="optimal gains")
     for weight in (0.1, 1.0, 10.0, 100.0, 1000.0):
         if weights[0] <= weight <= weights[-1]:
-            near = int(np.argmin(np.abs(np.log(weights / weight))))
-            if not np.isnan(rows[near, 0]):
+            distance = np.abs(np.log(weights / weight))
+            near = int(np.argmin(np.where(np.isnan(rows[:, 0]), np.inf, distance)))
+            if distance[near] < 0.5 * np.log(10):
                 right.plot(*rows[near, :2], marker="o", markersize=4, color=shared.INK)
                 right.annotate(
                     f"{weights[near]:.4g} m²",
                     rows[near, :2],
-                    (9, -3),
+                    (-4, 7),
                     textcoords="offset points",
-                    fontsize=8,
-                    va="center",
+                    fontsize=9,
+                    ha="right",
                 )
     shared.legend_below(right)
     return figure, np.array([left, right], dtype=object)

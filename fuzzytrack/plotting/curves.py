@@ -13,8 +13,6 @@ from fuzzytrack.plotting import _figures as shared
 
 __all__ = ["plot_curves"]
 
-STYLES = ("-", "--", "-.", ":")
-
 
 def plot_curves(
     x: ArrayLike,
@@ -69,15 +67,12 @@ def plot_curves(
             values,
             label=label,
             color=shared.COLORS[number % len(shared.COLORS)],
-            linestyle=STYLES[number % len(STYLES)],
+            linestyle=shared.STYLES[number % len(shared.STYLES)],
         )
     for number, (label, (at, value)) in enumerate((marks or {}).items()):
         marker = shared.MARKERS[number % len(shared.MARKERS)]
         axes.plot(at, value, marker, color=shared.INK, markerfacecolor="none", label=label)
-    if xlog:
-        axes.set_xscale("log")
-    if ylog:
-        axes.set_yscale("log")
+    shared.log_axis(axes, *("x" if xlog else ""), *("y" if ylog else ""))
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     if title:

@@ -23,7 +23,6 @@ __all__ = [
 
 Unit = Literal["m", "km"]
 
-STYLES = ("-", "--", "-.", ":")
 # Curves that differ by more than this factor are drawn on a logarithmic scale.
 APART = 30.0
 # Number of points of a curve of a distribution; more would not be visible.
@@ -381,7 +380,7 @@ def _look(number: int) -> dict[str, Any]:
     """Color and dashes of a tracker, by its place: the same in every picture."""
     return {
         "color": shared.COLORS[number % len(shared.COLORS)],
-        "linestyle": STYLES[number % len(STYLES)],
+        "linestyle": shared.STYLES[number % len(shared.STYLES)],
     }
 
 
@@ -396,7 +395,7 @@ def _scale(ax: Axes, which: str, curves: Sequence[Array]) -> None:
     """Linear from zero; logarithmic where the medians of curves are far apart."""
     middles = [float(np.median(curve[curve > 0])) for curve in curves if (curve > 0).any()]
     if middles and max(middles) > APART * min(middles):
-        getattr(ax, f"set_{which}scale")("log")
+        shared.log_axis(ax, which)
     else:
         high = getattr(ax.dataLim, f"{which}1")
         getattr(ax, f"set_{which}lim")(0.0, 1.05 * high if middles else None)

@@ -254,11 +254,17 @@ def _enlarge(
 ) -> None:
     """Inset above the triangle's long side, where the plane is empty."""
     margin = np.maximum(0.15 * (high - low), (0.01, 0.02))
-    window = ax.inset_axes((0.60, 0.56, 0.39, 0.42))
+    window = ax.inset_axes((0.60, 0.55, 0.39, 0.41))
     _references(window, labels=False)
     _draw(window, clouds, outline, marks, size=5.0)
     window.set_xlim(low[0] - margin[0], high[0] + margin[0])
     window.set_ylim(low[1] - margin[1], high[1] + margin[1])
     window.locator_params(nbins=5)
     window.tick_params(labelsize=8)
-    ax.indicate_inset_zoom(window, edgecolor=shared.INK, alpha=0.6)
+    window.set_title("inside the dashed frame", fontsize=9)
+    # The frame alone: lines from it to the inset would cross the curves.
+    frame = ax.indicate_inset_zoom(window, edgecolor=shared.INK, alpha=0.8, linestyle="--")
+    for connector in frame.connectors or ():
+        connector.set_visible(False)
+    for side in window.spines.values():
+        side.set(linestyle="--", alpha=0.8)

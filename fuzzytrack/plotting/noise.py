@@ -24,11 +24,9 @@ from fuzzytrack.plotting.stability import SPACES, Space, draw_edges, finish_spac
 
 __all__ = ["plot_noise_against_lag", "plot_noise_ratio", "plot_noise_surfaces"]
 
-STYLES = ("-", "--", "-.", ":")
-
 
 def plot_noise_ratio(
-    levels: Sequence[float] = (0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0),
+    levels: Sequence[float] = (0.5, 1.0, 2.0, 5.0, 10.0, 50.0),
     of: str = "predicted",
     *,
     ax: Axes | None = None,
@@ -105,6 +103,8 @@ def plot_noise_surfaces(
     shared.choice("space", space, SPACES)
     values = increasing("levels", levels)
     figure, (solid,) = shared.panels("ax", ax, 1, columns=1, size=(6.4, 5.8), three_d=True)
+    # Smaller surfaces are inside of larger ones, and would be hidden by them.
+    solid.computed_zorder = False
     handles = []
     for number, level in enumerate(values.tolist()):
         mesh = _noise_surface(level)
@@ -118,6 +118,7 @@ def plot_noise_surfaces(
             rstride=4,
             cstride=4,
             shade=False,
+            zorder=len(values) - number,
         )
         handles.append(Patch(facecolor=color, alpha=0.5, label=f"ρ² = {level:g}"))
     draw_edges(solid, space)
@@ -202,7 +203,7 @@ def plot_noise_against_lag(
             steady_error(alpha, beta, acceleration=1.0),
             noise_ratio(alpha, beta),
             color=shared.COLORS[number],
-            linestyle=STYLES[number],
+            linestyle=shared.STYLES[number],
             linewidth=1.6,
             label=label,
         )
@@ -217,13 +218,12 @@ def plot_noise_against_lag(
             label=label,
         )
     plane.set(
-        xscale="log",
-        yscale="log",
         xlim=(0.5, 300),
         ylim=(0.05, 20),
         xlabel="steady lag behind an acceleration a (a T²)",
         ylabel="variance ratio ρ² of the prediction",
     )
+    shared.log_axis(plane, "x", "y")
     shared.finish(plane)
     shared.legend_below(plane)
     return figure, plane

@@ -29,7 +29,6 @@ from fuzzytrack.plotting.stability import LABELS
 __all__ = ["plot_motion_gains", "plot_optimal_curves", "plot_optimal_gains"]
 
 Order = Literal[2, 3]
-STYLES = ("-", "--", "-.", ":")
 
 
 def plot_optimal_curves(*, ax: Axes | None = None) -> tuple[Figure, Axes]:
@@ -47,26 +46,29 @@ def plot_optimal_curves(*, ax: Axes | None = None) -> tuple[Figure, Axes]:
 
     Notes
     -----
-    Llinas et al. (1998), Fig. 2.17, Eqs. 2.98, 2.100 and 2.102. The dots are the indices 0.1, 1 and
-    10 of `velocity_index`, `acceleration_index` and `steady_index`.
+    Llinas et al. (1998), Fig. 2.17, Eqs. 2.98, 2.100 and 2.102. The dots are the indices 0.2, 1 and
+    5 of `velocity_index`, `acceleration_index` and `steady_index`.
     """
     figure, (plane,) = shared.panels("ax", ax, 1, columns=1, size=(6.4, 5.8))
     triangle(plane)
-    index, dots = np.geomspace(1e-4, 1e4, 401), np.array([0.1, 1.0, 10.0])
+    index, dots = np.geomspace(1e-4, 1e4, 401), np.array([0.2, 1.0, 5.0])
     for number, (label, optimal) in enumerate(_STRAIGHT.items()):
         color = shared.COLORS[number]
         plane.plot(
-            *optimal(index), color=color, linestyle=STYLES[number], linewidth=1.8, label=label
+            *optimal(index),
+            color=color,
+            linestyle=shared.STYLES[number],
+            linewidth=1.8,
+            label=label,
         )
         plane.plot(*optimal(dots), color=color, linestyle="none", marker="o", markersize=5)
         for value, alpha, beta in zip(dots, *optimal(dots), strict=True):
-            right = number == 0
             plane.annotate(
                 f"{value:g}",
                 (alpha, beta),
-                (7, -3) if right else (-7, 3) if number == 2 else (7, 0),
+                ((8, -4), (8, 2), (-8, 4))[number],
                 textcoords="offset points",
-                fontsize=8,
+                fontsize=9,
                 color=color,
                 ha="right" if number == 2 else "left",
                 va="center",
@@ -153,11 +155,12 @@ def plot_optimal_gains(
                 index,
                 values,
                 color=shared.COLORS[number],
-                linestyle=STYLES[number],
+                linestyle=shared.STYLES[number],
                 linewidth=1.7,
                 label="αβγ"[number],
             )
-        ax.set(xscale="log", ylim=(0, None), title=title, xlabel=label, ylabel="optimal gains")
+        ax.set(ylim=(0, None), title=title, xlabel=label, ylabel="optimal gains")
+        shared.log_axis(ax, "x")
         shared.finish(ax)
         shared.legend_below(ax)
     return figure, grid
@@ -229,7 +232,7 @@ def plot_motion_gains(
             velocity_index(speed, dt, sigma, kappa), acceleration_index(values, dt, sigma, kappa)
         )
         for ax, row, name in zip(grid, gains, LABELS["gains"], strict=True):
-            ax.plot(values, row, color=color, ls=STYLES[number % 4], lw=1.7, label=label)
+            ax.plot(values, row, color=color, ls=shared.STYLES[number % 4], lw=1.7, label=label)
             ax.set(xlabel="acceleration (m/s²)", ylabel=name, ylim=(0, None))
     for ax in grid:
         if order == 3:

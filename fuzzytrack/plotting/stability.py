@@ -92,16 +92,9 @@ def plot_stability_regions(*, ax: Axes | None = None) -> tuple[Figure, Axes]:
         (0.3, 2.3, "Ib"),
         (0.82, 0.14, "IIa"),
         (1.3, 0.5, "α > 1"),
+        (0.93, 1.82, "IIb"),
     ):
         plane.text(right, up, name, ha="center", va="center", fontsize=11)
-    plane.annotate(
-        "IIb",
-        (0.72, 2.45),
-        (1.05, 2.9),
-        fontsize=11,
-        va="center",
-        arrowprops={"arrowstyle": "-", "color": shared.INK, "lw": 0.8},
-    )
     plane.set(
         xlim=(-0.03, 2.06), ylim=(-0.06, 4.12), xlabel=LABELS["gains"][0], ylabel=LABELS["gains"][1]
     )

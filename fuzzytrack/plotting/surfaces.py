@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import output_grid
@@ -23,6 +26,8 @@ __all__ = ["plot_gain_surfaces", "plot_relation", "plot_surface"]
 
 
 STYLES = ("surface", "contour")
+# Where the light of surfaces comes from, of length 1.
+_LIGHT = (0.36, -0.48, 0.8)
 GAIN_LABELS = {
     "alpha": "position gain α",
     "beta": "velocity gain β",
@@ -61,7 +66,7 @@ def plot_surface(
     output : str, optional
         Name of one output; all unless given.
     points : int
-        Points on each axis, at least 2.
+        Evenly spaced points on each axis, at least 2; the corners of the sets are added to them.
     method : {"exact", "relation", "table"}, optional
         As for `fuzzytrack.fuzzy.system.FuzzySystem`; that of the system, ``exact`` for a rule base.
     style : {"surface", "contour"}
@@ -120,7 +125,7 @@ def plot_gain_surfaces(
         Kalata's gains, converted to α and β in the w-domain; or with outputs ``alpha`` and
         ``beta``, and maybe ``gamma``, drawn as they are.
     points : int
-        Points on each axis, at least 2.
+        Evenly spaced points on each axis, at least 2; the corners of the sets are added to them.
     method : {"exact", "relation", "table"}, optional
         As for `plot_surface`.
     style : {"surface", "contour"}
@@ -184,14 +189,14 @@ def _values(
     """Find the inputs to draw over, their points, and the output there."""
     rules = system.rules
     if len(rules.inputs) > 1:
-        data = system.surface(output, points, inputs=inputs, at=at)
+        data = system.surface(output, points, inputs=inputs, at=at, corners=True)
         return (rules.input(data.x_name), rules.input(data.y_name)), (data.x, data.y), data.values
     if points < 2:
         raise ValueError(f"points: must be at least 2, got {points}")
     if inputs or at:
         raise ValueError(f"inputs, at: only for several inputs; {rules.name} has one")
     variable = rules.inputs[0]
-    x = np.linspace(variable.universe.low, variable.universe.high, points)
+    x = variable.nodes(points)
     return (variable,), (x,), np.asarray(system(**{variable.name: x})[output])
 
 
@@ -204,7 +209,7 @@ def _draw(
     elif style == "contour":
         draw, size = _map, (5.0, 4.2)
     else:
-        draw, size = _perspective, (5.0, 4.6)
+        draw, size = _perspective, (5.6, 4.6)
     figure, grid = shared.panels(
         "axes",
         axes,
@@ -239,38 +244,64 @@ def _map(ax: Axes, picture: _Picture) -> None:
     between = [level for level in inside if values.min() < level < values.max()]
     if between:
         ax.contour(x, y, values, levels=between, colors="white", linewidths=0.5, alpha=0.6)
-    shared.figure_of(ax).colorbar(
-        filled, ax=ax, label=picture.label, ticks=shared.ticks(low, high, 6), format="%.3g"
-    )
+    _colorbar(ax, filled, low, high, label=picture.label)
     _name_inputs(ax, picture, 8)
 
 
 def _perspective(ax: Any, picture: _Picture) -> None:
     x, y = np.meshgrid(*picture.grid, indexing="ij")
     low, high = _range(picture.values)
+    colors = ScalarMappable(Normalize(low, high), shared.COLORMAP)
+    # Without lines, which would hide the surface where nodes are dense.
     ax.plot_surface(
         x,
         y,
         picture.values,
         rstride=1,
         cstride=1,
-        cmap=shared.COLORMAP,
-        vmin=low,
-        vmax=high,
-        edgecolor=(0.1, 0.1, 0.1, 0.3),
-        linewidth=0.15,
+        facecolors=_shaded(colors.to_rgba(picture.values), picture, high - low),
+        shade=False,
+        linewidth=0,
+        antialiased=False,
     )
     ax.set_zlim(low, high)
     ax.locator_params(axis="z", nbins=5)
-    ax.set_title(picture.label, y=0.98)
+    ax.set_zlabel(textwrap.fill(picture.label, 30))
+    _colorbar(ax, colors, low, high, shrink=0.62, pad=0.03)
     _name_inputs(ax, picture, 4, width=22)
     # The labels run beside the ticks' numbers; those of two lines need more room.
-    ax.xaxis.labelpad, ax.yaxis.labelpad = (
-        8 if "\n" not in text else 18 for text in (ax.get_xlabel(), ax.get_ylabel())
-    )
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        axis.labelpad = 18 if "\n" in axis.get_label_text() else 7
+    # At the front corner the numbers of both axes would touch.
+    ax.tick_params(axis="x", pad=6)
+    ax.tick_params(axis="y", pad=-1)
     ax.view_init(elev=32, azim=-125)
     # Leaves room for the labels, which matplotlib does not count.
-    ax.set_box_aspect(None, zoom=0.84)
+    ax.set_box_aspect(None, zoom=0.82)
+
+
+def _shaded(colors: Array, picture: _Picture, height: float) -> Array:
+    """Colors of faces, a little darker the further they turn from the light.
+
+    Slopes are those in a box of equal sides.
+    """
+    x, y = (nodes / np.ptp(nodes) for nodes in picture.grid)
+    z = picture.values / height
+    # Faces have the color of their corner of the lowest indices; those at the far edges are none.
+    right, up = np.zeros_like(z), np.zeros_like(z)
+    right[:-1] = np.diff(z, axis=0) / np.diff(x)[:, None]
+    up[:, :-1] = np.diff(z, axis=1) / np.diff(y)
+    toward = (_LIGHT[2] - _LIGHT[0] * right - _LIGHT[1] * up) / np.sqrt(1 + right**2 + up**2)
+    shaded = colors.copy()
+    shaded[..., :3] *= (0.7 + 0.3 * np.clip(np.nan_to_num(toward), 0.0, 1.0))[..., None]
+    return shaded
+
+
+def _colorbar(ax: Axes, colors: Any, low: float, high: float, **where: Any) -> Colorbar:
+    """Color scale with both ends named."""
+    three_digits = FuncFormatter(lambda value, _: f"{value:.3g}".replace("-", "\N{MINUS SIGN}"))
+    ticks = shared.ticks(low, high, 6)
+    return shared.figure_of(ax).colorbar(colors, ax=ax, ticks=ticks, format=three_digits, **where)
 
 
 def _range(values: Array) -> tuple[float, float]:

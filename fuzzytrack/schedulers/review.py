@@ -112,7 +112,9 @@ def explanation(system: FuzzySystem, point: dict[str, float]) -> dict[str, Any]:
     }
 
 
-def grid_table(system: FuzzySystem, points: int, at: Mapping[str, float]) -> dict[str, Array]:
+def grid_table(
+    system: FuzzySystem, points: int, at: Mapping[str, float], *, corners: bool = False
+) -> dict[str, Array]:
     """Inputs, outputs, and gains behind the outputs, over a grid of the first two inputs.
 
     Parameters
@@ -122,6 +124,8 @@ def grid_table(system: FuzzySystem, points: int, at: Mapping[str, float]) -> dic
         Points on each axis.
     at : mapping of str to float
         Values of the other inputs.
+    corners : bool
+        Whether the points include every corner of the sets.
 
     Returns
     -------
@@ -129,7 +133,7 @@ def grid_table(system: FuzzySystem, points: int, at: Mapping[str, float]) -> dic
         One column each, a row for every point of the grid.
     """
     rules = system.rules
-    axes = [np.linspace(v.universe.low, v.universe.high, points) for v in rules.inputs[:2]]
+    axes = [v.nodes(points, corners=corners) for v in rules.inputs[:2]]
     axes += [np.array([at[name]]) for name in rules.input_names[2:]]
     grid = np.stack([g.ravel() for g in np.meshgrid(*axes, indexing="ij")], axis=1)
     inputs = {name: grid[:, k] for k, name in enumerate(rules.input_names)}

@@ -274,7 +274,9 @@ def test_schema(run, tmp_path):
 
 def test_surface(run, tmp_path):
     picture, table = tmp_path / "s.png", tmp_path / "s.csv"
-    result = run("surface", "stiffness-damping", "-o", picture, "--csv", table, "--points", "5")
+    result = run(
+        "surface", "stiffness-damping", "-o", picture, "--csv", table, "--points", "5", "--even"
+    )
     assert f"wrote {picture}" in result.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")
     with open(table, newline="") as stream:
@@ -284,6 +286,26 @@ def test_surface(run, tmp_path):
     (row,) = [r for r in rows if (r["E"], r["dE"]) == ("-0.5", "1.0")]
     assert float(row["stiffness"]) == values["stiffness"]
     assert float(row["beta"]) == alpha_beta_from_w(values["stiffness"], values["damping"])[1]
+
+
+def test_surface_has_the_corners_of_the_sets(run, tmp_path):
+    table = tmp_path / "s.csv"
+    run("surface", "stiffness-damping", "--csv", table, "--points", "2")
+    with open(table, newline="") as stream:
+        found = {float(row["E"]) for row in csvlib.DictReader(stream)}
+    sets = load_rulebase("stiffness-damping").input("E").sets
+    assert found == {p for each in sets for p in each.breakpoints() if -1 <= p <= 1}
+
+
+def test_contours_instead_of_surfaces(run, tmp_path, monkeypatch):
+    from fuzzytrack.cli import surface as command
+
+    drawn = []
+    monkeypatch.setattr(command, "save_picture", lambda path, draw, inputs=(): drawn.append(draw()))
+    for name, panels in (("stiffness-damping", 4), ("tipper", 1)):
+        run("surface", name, "--contour", "-o", tmp_path / "s.png", "--points", "5")
+        axes = [ax for ax in drawn[-1].axes if ax.get_xlabel()]
+        assert [ax.name for ax in axes] == ["rectilinear"] * panels
 
 
 def test_surface_without_files_gives_ranges(run):
@@ -321,6 +343,8 @@ def test_surface_of_one_and_of_three_inputs(run, fails, csv, tmp_path):
         (["-o", "a.gif"], "cannot draw .gif"),
         (["--csv", "a.png"], "cannot write .png"),
         (["--csv", "no/a.csv"], "there is no folder"),
+        (["--contour"], "--contour needs -o FILE"),
+        (["--even"], "--even needs --csv FILE"),
     ],
 )
 def test_bad_surfaces(fails, words, message):

@@ -131,3 +131,33 @@ def test_a_singleton_lies_on_the_nearest_grid_point():
 def test_centers_are_inside_the_universe():
     variable = Variable("v", Universe(0, 1, 5), triangles("abc", (-0.5, 0.4, 2.0)))
     np.testing.assert_array_equal(variable.centers(), [0.0, 0.4, 1.0])
+
+
+# ------------------------------------------------------------------- nodes
+
+
+def test_nodes_are_even_points_and_corners():
+    inside = FuzzySet("inside", "trimf", (-5.0, 0.3, 0.75))
+    variable = Variable("x", Universe(-1, 1, 11), (inside, FuzzySet("bell", "gaussmf", (0, 0.2))))
+    np.testing.assert_array_equal(variable.nodes(5), [-1, -0.5, 0, 0.3, 0.5, 0.75, 1])
+    np.testing.assert_array_equal(variable.nodes(5, corners=False), [-1, -0.5, 0, 0.5, 1])
+
+
+def test_sets_of_straight_lines_are_straight_between_nodes():
+    sets = (
+        FuzzySet("a", "trapmf", (-1.0, -1.0, -0.31, 0.17)),
+        FuzzySet("jump", "trapmf", (0.4, 0.4, 0.6, 0.9)),
+        FuzzySet("spike", "singleton", (0.123,)),
+    )
+    variable = Variable("x", Universe(-1, 1, 11), sets)
+    nodes = variable.nodes(4)
+    x = np.random.default_rng(0).uniform(-1, 1, 500)
+    for each in sets:
+        drawn = np.interp(x, nodes, each.membership(nodes))
+        np.testing.assert_allclose(drawn, each.membership(x), atol=1e-12)
+
+
+def test_an_even_point_beside_a_corner_is_left_out():
+    # 3 * 0.1 is the float after 0.3.
+    corner = FuzzySet("a", "trimf", (0.0, 3 * 0.1, 1.0))
+    assert len(Variable("x", Universe(0, 1, 11), (corner,)).nodes(11)) == 11

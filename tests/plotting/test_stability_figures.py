@@ -42,8 +42,7 @@ def test_regions_are_those_of_the_theory():
         assert (found[sure] == names[name]).all()
         assert (found[~inside] != names[name]).all()
     for text in ax.texts:
-        place = text.xy if text.get_text() == "IIb" else text.get_position()
-        assert region(*place) == names[text.get_text()]
+        assert region(*text.get_position()) == names[text.get_text()]
     nothing_is_clipped(figure)
 
 

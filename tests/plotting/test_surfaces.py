@@ -42,12 +42,17 @@ def test_surface_has_each_value_at_its_place(rules, drawn):
     system = ft.FuzzySystem(rules)
     plot_surface(rules, points=7)
     ((ax, x, y, z),) = drawn
-    assert x.shape == (7, 7)
+    # Every corner of the sets is a node, beside the even ones.
+    np.testing.assert_allclose(x[:, 0], [0, 5 / 3, 10 / 3, 4, 5, 20 / 3, 25 / 3, 10])
+    np.testing.assert_allclose(y[0], [-1, -2 / 3, -1 / 3, 0, 0.2, 1 / 3, 2 / 3, 1], atol=1e-12)
     assert (x.min(), x.max(), y.min(), y.max()) == (0, 10, -1, 1)
     np.testing.assert_array_equal(z, system(x=x, y=y)["u"])
     assert ax.get_xlabel() == "distance (m)"
     assert ax.get_ylabel() == "y"
-    assert ax.get_title() == "u (s)"
+    assert ax.get_zlabel() == "u (s)"
+    scale = ax.figure.axes[1]
+    assert scale.get_ylim() == pytest.approx((z.min(), z.max()))
+    assert ax.get_zlim() == pytest.approx((z.min(), z.max()))
 
 
 def test_map_has_each_value_at_its_place(rules):
@@ -63,15 +68,14 @@ def test_map_has_each_value_at_its_place(rules):
 
 def test_all_outputs_side_by_side_or_one(shipped):
     _, axes = plot_surface(shipped, points=5)
-    assert [ax.get_title() for ax in axes] == ["stiffness", "damping"]
+    assert [ax.get_zlabel() for ax in axes] == ["stiffness", "damping"]
     assert axes[0].get_position().x1 <= axes[1].get_position().x0 + 0.1
     _, axes = plot_surface(shipped, "damping", points=5)
-    assert [ax.get_title() for ax in axes] == ["damping"]
+    assert [ax.get_zlabel() for ax in axes] == ["damping"]
 
 
 def test_method_is_that_of_the_system_unless_given(rules, drawn):
     coarse = ft.FuzzySystem(rules, method="table", table_nodes=3)
-    grid = np.linspace(0, 10, 5)[:, None], np.linspace(-1, 1, 5)
     for given, method, system in (
         (coarse, None, coarse),
         (coarse, "table", coarse),
@@ -79,7 +83,8 @@ def test_method_is_that_of_the_system_unless_given(rules, drawn):
         (rules, "relation", ft.FuzzySystem(rules, "relation")),
     ):
         plot_surface(given, points=5, method=method)
-        np.testing.assert_array_equal(drawn[-1][3], system(x=grid[0], y=grid[1])["u"])
+        _, x, y, z = drawn[-1]
+        np.testing.assert_array_equal(z, system(x=x, y=y)["u"])
 
 
 def test_more_than_two_inputs_need_the_others(drawn):
@@ -134,7 +139,7 @@ def test_surface_without_any_value(rules, style):
 
 def test_gain_surfaces_go_through_the_w_domain(shipped, drawn):
     _, axes = plot_gain_surfaces(shipped, points=9)
-    assert [ax.get_title() for ax in axes] == ["position gain α", "velocity gain β"]
+    assert [ax.get_zlabel() for ax in axes] == ["position gain α", "velocity gain β"]
     (_, x, y, alpha), (_, _, _, beta) = drawn
     outputs = ft.FuzzySystem(shipped)(E=x, dE=y)
     expected = ft.alpha_beta_from_w(outputs["stiffness"], outputs["damping"])

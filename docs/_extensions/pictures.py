@@ -1,0 +1,196 @@
+"""The page of all pictures: ``docs/pictures.md``, and its files in ``docs/pictures/``.
+
+Sphinx makes them before it reads the pages; run as a script with the name of a folder, this file
+makes them there.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+#: What the lines of `PICTURES` use; shown at the top of the page.
+SETUP = """\
+import numpy as np
+
+import fuzzytrack as ft
+from fuzzytrack.plotting import *
+from fuzzytrack.testbed import monte_carlo
+
+# A turning target, a plot every 4 s, three plots missed.
+t = 4.0 * np.arange(60)
+heading = np.deg2rad(90) * np.clip((t - 100) / 60, 0, 1)
+velocity = 150 * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+truth = np.cumsum(4.0 * velocity, axis=0)
+z = truth + np.random.default_rng(1).normal(0, 100, truth.shape)
+z[31:34] = np.nan
+result = ft.AlphaBetaTracker("stiffness-damping").run(t, z)
+fixed = ft.AlphaBetaTracker("fixed:alpha=0.5377:beta=0.2018").run(t, z)
+both = {"stiffness-damping": result, "fixed gains": fixed}
+
+# The same in space, and range alone.
+height = 3000 + 5 * t
+space = ft.AlphaBetaTracker("chan-style").run(t, np.column_stack([z, height]))
+alone = ft.AlphaBetaTracker("chan-style").run(t, np.hypot(*z.T))
+
+# Four trackers on 40 random draws of a turning target.
+trackers = {
+    "maneuver": "maneuver",
+    "stiffness-damping": "stiffness-damping",
+    "Kalman": "kalman-cv:sigma_v=1",
+    "fixed gains": "fixed:alpha=0.3:beta=0.05",
+}
+found = monte_carlo("turn", trackers, 40, 1)
+names = found.names
+rmse = dict(zip(names, found.rmse_per_scan()))
+twice = dict(zip(names, 2 * found.rmse_per_scan_se()))
+bands = {name: (rmse[name] - twice[name], rmse[name] + twice[name]) for name in names}
+run = found.sample
+predicted = dict(zip(names, run.predicted))
+distances = dict(zip(names, found.predicted_distance))
+"""
+
+#: Lines that make the pictures, by the heading under which they are shown.
+PICTURES = {
+    "Rule bases": [
+        'plot_memberships("stiffness-damping")',
+        'plot_memberships("maneuver")',
+        'plot_memberships("tipper", "tip")',
+        'plot_surface("stiffness-damping")',
+        'plot_surface("stiffness-damping", style="contour")',
+        'plot_surface("tipper")',
+        'plot_surface("tipper", style="contour")',
+        'plot_surface("maneuver")',
+        'plot_surface("omega-schedule")',
+        'plot_gain_surfaces("stiffness-damping")',
+        'plot_gain_surfaces("chan-style", style="contour")',
+        'plot_gain_surfaces("omega-schedule")',
+        'plot_relation("valve")',
+        'plot_relation("valve", at=1.25)',
+    ],
+    "Gains": [
+        'plot_gain_plane(both, "stiffness-damping")',
+        'plot_gain_plane(result, mark={"fixed": (0.5377, 0.2018)}, inset=False)',
+        "plot_stability_regions()",
+        "plot_stability_volume()",
+        'plot_stability_volume(surfaces="critical")',
+        'plot_stability_volume(surfaces="dividing")',
+        'plot_stability_volume("abc")',
+        'plot_stability_volume("abc", surfaces="critical")',
+        'plot_stability_volume("abc", surfaces="dividing")',
+        "plot_noise_ratio()",
+        'plot_noise_ratio(of="velocity")',
+        'plot_noise_against_lag({"fixed gains": (0.5377, 0.2018)})',
+        "plot_noise_surfaces()",
+        'plot_noise_surfaces(space="abc")',
+    ],
+    "Best gains": [
+        "plot_optimal_curves()",
+        "plot_optimal_gains()",
+        "plot_optimal_gains(order=3)",
+        "plot_motion_gains()",
+        "plot_motion_gains(order=3)",
+        "plot_circle_cost()",
+        "plot_circle_gains()",
+        "plot_circle_gains(order=3)",
+    ],
+    "Tracks": [
+        "plot_track(result, truth)",
+        "plot_track(space)",
+        'plot_track(alone, axes_names=["range"])',
+        "plot_errors(both, truth)",
+    ],
+    "Experiments": [
+        "plot_error_over_time(found.time, rmse, bands)",
+        "plot_error_distribution(distances)",
+        "plot_trajectories(run.time, run.truth, run.plots, predicted)",
+        'plot_consistency(t, {"stiffness-damping": 2 + 0.3 * np.sin(t)}, (1.5, 2.6), expected=2)',
+    ],
+}
+
+
+# Width in inches beyond which a picture gets a row of its own.
+WIDE = 7.0
+
+
+def function_of(line):
+    """Name of the function that a line calls."""
+    return re.match(r"\w+", line)[0]
+
+
+def pictures(lines=None):
+    """Name of the file, line and figure of each picture, one after the other; all unless given."""
+    known = {}
+    exec(SETUP, known)
+    counts = {}
+    for line in lines or [line for some in PICTURES.values() for line in some]:
+        name = function_of(line)
+        counts[name] = counts.get(name, 0) + 1
+        yield f"{name}-{counts[name]}.png", line, eval(line, known)[0]
+
+
+def write(folder):
+    """Write ``pictures.md`` and the folder ``pictures`` beside it."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    folder = Path(folder)
+    (folder / "pictures").mkdir(parents=True, exist_ok=True)
+    entries = {}
+    for file, line, figure in pictures():
+        figure.savefig(folder / "pictures" / file, dpi=100)
+        kind = "picture wide" if figure.get_figwidth() > WIDE else "picture"
+        entries[line] = ENTRY.format(file=file, line=line, name=function_of(line), kind=kind)
+        plt.close(figure)
+    text = [HEAD]
+    for heading, lines in PICTURES.items():
+        text += [f"## {heading}\n", *(entries[line] for line in lines)]
+    text.append(FOOT.format(setup=SETUP))
+    (folder / "pictures.md").write_text("\n".join(text), encoding="utf-8")
+
+
+def setup(app):
+    """Draw when Sphinx begins."""
+    write(app.srcdir)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+HEAD = """\
+# All pictures
+
+You see what every function of {mod}`fuzzytrack.plotting` draws, and the line that makes each
+picture. What the lines use is at the end. This page is generated: its lines run when the
+documentation is built.
+
+```{raw} html
+<style>
+figure.picture { display: inline-block; width: 100%; margin: 0 0 1.5rem; vertical-align: top; }
+.bd-article figure.picture figcaption, figure.picture .legend { margin: 0; text-align: left; }
+figure.picture pre { white-space: pre-wrap; font-size: .8rem; margin: 0; text-align: left; }
+figure.picture figcaption p { margin: .3rem 0; }
+@media (min-width: 60rem) { figure.picture:not(.wide) { width: 49%; } }
+</style>
+```
+"""
+
+ENTRY = """\
+```{{figure}} pictures/{file}
+:alt: {name}
+:figclass: {kind}
+
+{{func}}`~fuzzytrack.plotting.{name}`
+
+    {line}
+```
+"""
+
+FOOT = """\
+## What the lines use
+
+```python
+{setup}```
+"""
+
+if __name__ == "__main__":
+    write(sys.argv[1])
