@@ -9,16 +9,13 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
+from fuzzytrack.cli.text_table import table_lines, wrapped
 from fuzzytrack.json_types import plain
 from fuzzytrack.tasks import Progress
-
-if TYPE_CHECKING:
-    from rich.table import Table
 
 __all__ = [
     "output_folder",
@@ -35,9 +32,6 @@ __all__ = [
 
 _ARGUMENT = re.compile(r"`(\w+)`")
 
-# Spaces between the columns of a table.
-_GAP = 2
-
 
 def say(text: str = "") -> None:
     """Print a line without wrapping it."""
@@ -53,8 +47,9 @@ def say_aside(text: str) -> None:
 
 
 def paragraph(text: str) -> None:
-    """Print text in lines of at most 80 characters."""
-    say(fill(text, 80))
+    """Print text in lines as wide as the terminal, of at most 80 characters."""
+    for line in wrapped(text, min(80, _terminal_width())):
+        say(line)
 
 
 def show(number: float, digits: int = 4) -> str:
@@ -83,63 +78,31 @@ def print_table(
 ) -> None:
     """Print a table as wide as the terminal, 80 characters where there is none.
 
-    Numbers and words are never broken: a table with too many columns is wider than the terminal.
+    Numbers are never broken, and names of trackers only at their colons; see
+    `fuzzytrack.cli.text_table.table_lines`.
 
     Parameters
     ----------
     columns : sequence of str
         Heads.
     rows : sequence of sequence of str
-        Cells; an empty row draws a line.
+        Cells; an empty row is an empty line.
     title : str
         Line above the table.
     words : int
         How many columns, from the left, hold words; the others hold numbers.
     """
-    from rich import box
+    width = _terminal_width()
+    for line in wrapped(title, width) if title else ():
+        say(line)
+    for line in table_lines(columns, rows, width, words):
+        say(line)
+
+
+def _terminal_width() -> int:
     from rich.console import Console
-    from rich.text import Text
 
-    console = Console(highlight=False)
-    widths = _widths([columns, *filter(None, rows)], words, console.width)
-    console.width = max(console.width, sum(widths) + _GAP * len(widths))
-    table = _empty_table(box.SIMPLE_HEAD)
-    for number, (name, width) in enumerate(zip(columns, widths, strict=True)):
-        table.add_column(Text(name), justify="left" if number < words else "right", width=width)
-    for row in rows:
-        if not row:
-            table.add_section()
-        else:
-            table.add_row(*map(Text, row))
-    if title:
-        say(title)
-    with console.capture() as printed:
-        console.print(table)
-    for line in printed.get().splitlines():
-        say(line.rstrip())
-
-
-def _widths(lines: Sequence[Sequence[str]], words: int, room: int) -> list[int]:
-    """Widths of columns; where there is too little room, the widest ones of words are narrowed."""
-    from rich.cells import cell_len
-
-    widths, least = [], []
-    for number, cells in enumerate(zip(*lines, strict=True)):
-        parts = " ".join(cells).split() if number < words else cells
-        widths.append(max(map(cell_len, cells)))
-        least.append(max(map(cell_len, parts), default=0))
-    while sum(widths) + _GAP * (len(widths) - 1) > room:
-        wide = [width if width > low else 0 for width, low in zip(widths, least, strict=True)]
-        if not any(wide):
-            break
-        widths[wide.index(max(wide))] -= 1
-    return widths
-
-
-def _empty_table(style: Any) -> Table:
-    from rich.table import Table
-
-    return Table(box=style, show_edge=False, pad_edge=False, collapse_padding=True)
+    return Console().width
 
 
 def print_json(value: Any) -> None:

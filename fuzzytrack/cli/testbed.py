@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.compare import trackers_named
+from fuzzytrack.cli.compare import print_marks, trackers_named
 from fuzzytrack.cli.output import (
     output_folder,
+    paragraph,
     print_json,
     print_table,
     progress,
@@ -26,6 +27,7 @@ from fuzzytrack.io.files import check_output
 from fuzzytrack.plurals import counted
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_source, shipped_scenarios
+from fuzzytrack.testbed.marks import marks_of
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.base import Tracker
@@ -155,17 +157,25 @@ def _save(path: Path, figure: Figure) -> None:
 def _print(found: Results) -> None:
     """Tables of the trackers, numbers ± their standard errors."""
     table = found.table()
+    predicted, filtered = ([row[f"{of}_rmse"] for row in table] for of in ("predicted", "filtered"))
+    marks = marks_of(predicted, filtered, found.measured_rmse)
     rows = [
         [
             row["name"],
             with_error(row["predicted_rmse"], row["predicted_rmse_se"]),
             with_error(row["filtered_rmse"], row["filtered_rmse_se"]),
             _change(row),
+            mark,
         ]
-        for row in table
+        for row, mark in zip(table, marks, strict=True)
     ]
-    rows += [[], ["the plots themselves", "", show(found.measured_rmse), ""]]
-    print_table(["RMSE (m)", "predicted", "filtered", "vs first"], rows, title=_title(found))
+    rows += [[], ["the plots themselves", "", show(found.measured_rmse), "", ""]]
+    print_table(["RMSE (m)", "predicted", "filtered", "vs first", ""], rows, title=_title(found))
+    print_marks(marks)
+    paragraph(
+        "vs first: 95 % interval of the change in a run's RMSE of prediction against the first "
+        "tracker; * means 0 is outside."
+    )
     say()
     rows = [
         [
@@ -178,8 +188,6 @@ def _print(found: Results) -> None:
         for row in table
     ]
     print_table(["error of prediction (m)", "mean", "std dev", "peak RMSE", "at scan"], rows)
-    say()
-    say("vs first: 95 % interval of the change in a run's RMSE of prediction; * means 0 is outside")
 
 
 def _title(found: Results) -> str:

@@ -15,6 +15,7 @@ from fuzzytrack.recordings.ragged import Batch, batches
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import check_runs
 from fuzzytrack.tasks import Progress
+from fuzzytrack.testbed.marks import best_of, marks_of
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
@@ -94,6 +95,11 @@ class Comparison:
         """Relative change of `predicted_rmse` against the first tracker, shape (n_trackers,)."""
         return np.asarray(self.predicted_rmse / self.predicted_rmse[0] - 1)
 
+    @property
+    def marks(self) -> list[str]:
+        """Which tracker predicts best, and whose filtered positions are worse than the plots."""
+        return marks_of(self.predicted_rmse, self.filtered_rmse, self.measured_rmse)
+
     def errors(self) -> dict[str, Array]:
         """Errors with their standard errors (m), by name, each of shape (n_trackers,)."""
         names = ("predicted_rmse", "predicted_error", "filtered_rmse", "filtered_error")
@@ -102,14 +108,21 @@ class Comparison:
     def to_json_dict(self) -> dict[str, Any]:
         """Summary in plain types, for JSON; NaN for the standard errors of a single run."""
         errors = self.errors()
+        best = best_of(self.predicted_rmse)
+        worse = self.filtered_rmse > self.measured_rmse
         return {
             "noise": self.sigma,
             "runs": self.runs,
             "seed": self.seed,
             "scans": round(self.scans.mean()),
             "measured_rmse": self.measured_rmse,
+            "best": None if best is None else self.names[best],
             "trackers": [
-                {"name": name, **{key: float(values[k]) for key, values in errors.items()}}
+                {
+                    "name": name,
+                    **{key: float(values[k]) for key, values in errors.items()},
+                    "worse_than_plots": bool(worse[k]),
+                }
                 for k, name in enumerate(self.names)
             ],
         }

@@ -41,22 +41,6 @@ def test_track_prints_a_summary(run, plots):
     assert row.split()[:4] == ["track", "4", "1", "4"]
 
 
-@pytest.mark.parametrize(("columns", "width"), [(20, 45), (48, 48), (52, 52), (80, 52)])
-def test_no_terminal_is_too_narrow_for_numbers_and_words(columns, width, monkeypatch, capsys):
-    monkeypatch.setenv("COLUMNS", str(columns))
-    rows = [
-        ["stiffness-damping", "a wide description", "0.50391"],
-        [],
-        ["all", "b", "-1234.5678"],
-    ]
-    output.print_table(["name", "what it is", "mean α (m/s²)"], rows, words=2)
-    printed = capsys.readouterr().out
-    for whole in ("stiffness-damping", "description", " 0.50391", " -1234.5678", "mean α (m/s²)"):
-        assert whole in printed
-    assert max(map(len, printed.splitlines())) == width
-    assert ("a wide description" in printed) == (columns >= 52)
-
-
 def test_track_writes_what_the_tracker_says(run, plots, tmp_path):
     out, picture = tmp_path / "out.csv", tmp_path / "out.png"
     result = run("track", plots, "-o", out, "--plot", picture, "--tracker", "chan-style")
