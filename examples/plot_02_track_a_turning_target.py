@@ -24,7 +24,8 @@ z = truth + random.normal(0, 100, truth.shape)
 z[31:34] = np.nan
 
 # %%
-# Two trackers that differ in their scheduler only.
+# Two trackers that differ in their scheduler only. Below the track of the second are its gains over
+# time, with the turn shaded.
 trackers = {
     "fixed gains": ft.AlphaBetaTracker(ft.FixedGains(alpha=0.5377, beta=0.2018)),
     "stiffness-damping": ft.AlphaBetaTracker(
@@ -32,7 +33,7 @@ trackers = {
     ),
 }
 result = trackers["stiffness-damping"].run(t, z)
-ft.plot_track(result, truth)
+ft.plot_track(result, truth, gains=True)
 
 # %%
 # One track proves nothing. The same target 100 times, with other noise each time, as one batch of

@@ -43,7 +43,7 @@ tracked = ft.track(plots, polar=("range", "azimuth"), sigma_range=30, sigma_azim
 for sentence in tracked.findings.sentences():
     print(sentence)
 result = tracked.results[0]
-ft.plot_track(result, truth)
+tracked.plot()
 
 # %%
 # Azimuth passes north on the way. The two wrong plots are beyond the gate and were not used; of a

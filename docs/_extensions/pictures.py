@@ -32,6 +32,25 @@ height = 3000 + 5 * t
 space = ft.AlphaBetaTracker("chan-style").run(t, np.column_stack([z, height]))
 alone = ft.AlphaBetaTracker("chan-style").run(t, np.hypot(*z.T))
 
+# Targets that fly apart in all directions, and turn a little at each step: 3, 12 and 40 of them,
+# 40,000 plots of 400, and a circle of 900 plots.
+def fan(count, steps, turn=0.0, seed=3):
+    course = 2 * np.pi * (np.arange(count) / count + turn * np.arange(steps)[:, None])
+    path = 400 * np.stack([np.cos(course), np.sin(course)], axis=-1).cumsum(axis=0)
+    noise = np.random.default_rng(seed).normal(0, 100, path.shape)
+    return ft.AlphaBetaTracker("maneuver:level=10").run(4.0 * np.arange(steps), path + noise, 100)
+
+
+three, twelve, forty = (fan(count, 40, 0.01) for count in (3, 12, 40))
+crowd = fan(400, 100, 0.008)
+circle = fan(1, 900, 1 / 900)
+
+# Eight more trackers of the turning target.
+many = {
+    f"alpha={alpha}": ft.AlphaBetaTracker(ft.FixedGains(alpha, alpha**2 / 2)).run(t, z)
+    for alpha in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+}
+
 # Four trackers on 40 random draws of a turning target.
 trackers = {
     "maneuver": "maneuver",
@@ -95,9 +114,18 @@ PICTURES = {
     ],
     "Tracks": [
         "plot_track(result, truth)",
+        "plot_track(result, truth, gains=True)",
         "plot_track(space)",
+        "plot_track(circle, track=0, gains=True)",
+        'plot_tracks(three, ["A7", "B2", "C3"], gains=True)',
+        "plot_tracks(twelve)",
+        "plot_tracks(forty)",
+        "plot_tracks(crowd)",
+        "plot_gains_over_time(result, maneuvers=[(100, 160)])",
+        "plot_gains_over_time(twelve)",
         'plot_track(alone, axes_names=["range"])',
         "plot_errors(both, truth)",
+        "plot_errors(both | many, truth)",
     ],
     "Experiments": [
         "plot_error_over_time(found.time, rmse, bands)",

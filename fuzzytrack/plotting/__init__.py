@@ -15,12 +15,14 @@ from fuzzytrack.plotting.experiments import (
     plot_trajectories,
 )
 from fuzzytrack.plotting.gain_plane import plot_gain_plane
+from fuzzytrack.plotting.gains_over_time import plot_gains_over_time
 from fuzzytrack.plotting.memberships import plot_memberships
 from fuzzytrack.plotting.noise import plot_noise_against_lag, plot_noise_ratio, plot_noise_surfaces
 from fuzzytrack.plotting.optimum import plot_motion_gains, plot_optimal_curves, plot_optimal_gains
 from fuzzytrack.plotting.stability import plot_stability_regions, plot_stability_volume
 from fuzzytrack.plotting.surfaces import plot_gain_surfaces, plot_relation, plot_surface
-from fuzzytrack.plotting.tracks import plot_errors, plot_track
+from fuzzytrack.plotting.track_errors import plot_errors
+from fuzzytrack.plotting.tracks import plot_track, plot_tracks
 
 __all__ = [
     "plot_circle_cost",
@@ -31,6 +33,7 @@ __all__ = [
     "plot_errors",
     "plot_gain_plane",
     "plot_gain_surfaces",
+    "plot_gains_over_time",
     "plot_memberships",
     "plot_motion_gains",
     "plot_noise_against_lag",
@@ -43,5 +46,6 @@ __all__ = [
     "plot_stability_volume",
     "plot_surface",
     "plot_track",
+    "plot_tracks",
     "plot_trajectories",
 ]

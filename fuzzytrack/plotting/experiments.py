@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.plotting._track_styles import STYLES as TRACK_STYLES
 
 __all__ = [
     "plot_consistency",
@@ -197,18 +198,8 @@ class _Run:
         def on(positions: Array) -> list[Array]:
             return [self.time if k is None else positions[:, k] for k in axes]
 
-        # Broad and pale, so that other lines on it stay visible.
-        ax.plot(*on(self.truth), color="0.82", linewidth=5, label="true", zorder=1)
-        ax.plot(
-            *on(self.plots),
-            linestyle="none",
-            marker="s",
-            markersize=4.5,
-            markerfacecolor="none",
-            color=shared.GRAY,
-            label="plots",
-            zorder=2,
-        )
+        ax.plot(*on(self.truth), label="true", **TRACK_STYLES["true"])
+        ax.plot(*on(self.plots), label="plots", **TRACK_STYLES["plots"])
         sparse = len(self.time) <= DENSE
         for number, (label, track) in enumerate(self.tracks.items()):
             marker = shared.MARKERS[number % len(shared.MARKERS)]

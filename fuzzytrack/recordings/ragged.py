@@ -19,7 +19,7 @@ from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
-__all__ = ["Batch", "batches", "join_tracks", "run_judged_tracks", "run_tracks"]
+__all__ = ["Batch", "batches", "run_judged_tracks", "run_tracks"]
 
 
 # Tracks of one batch are at least this part of the longest: padding costs a quarter at most.
@@ -214,27 +214,3 @@ def _member(whole: TrackResult, column: int, length: int) -> TrackResult:
         gains = whole.gains
         kept["gains"] = Gains(*(cut(g) for g in (gains.alpha, gains.beta, gains.gamma)))
     return TrackResult.of(cut(whole.time), cut(whole.measured), None, kept)
-
-
-def join_tracks(results: Sequence[TrackResult]) -> TrackResult:
-    """Put tracks one after the other, as one track to be drawn.
-
-    Parameters
-    ----------
-    results : sequence of TrackResult
-        At least one.
-
-    Returns
-    -------
-    TrackResult
-        With a row of NaN between two tracks, so that no line joins them, and without a state.
-    """
-
-    def joined(parts: Sequence[Array]) -> Array:
-        gap = np.full((1, *parts[0].shape[1:]), np.nan)
-        return np.concatenate([piece for part in parts for piece in (part, gap)][:-1])
-
-    gains = [joined([getattr(r.gains, n) for r in results]) for n in ("alpha", "beta", "gamma")]
-    names = ("time", "measured", "predicted", "filtered", "velocity", "acceleration", "innovation")
-    values = {name: joined([getattr(r, name) for r in results]) for name in names}
-    return TrackResult(**values, gains=Gains(*gains), state=None)

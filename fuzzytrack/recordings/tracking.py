@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.data_frame import FrameSource
@@ -20,8 +17,9 @@ from fuzzytrack.io.recording import Recording, Track, read_recording, recording_
 from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.judging import GateWidth, judge_of
 from fuzzytrack.recordings.notebook import html_of
-from fuzzytrack.recordings.ragged import join_tracks, run_judged_tracks, run_tracks
-from fuzzytrack.recordings.restarts import divided, part_of
+from fuzzytrack.recordings.picture import picture_of
+from fuzzytrack.recordings.ragged import run_judged_tracks, run_tracks
+from fuzzytrack.recordings.restarts import divided
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_table import TrackTable
 from fuzzytrack.recordings.track_writer import check_tracks, table_of_tracks, write_tracks
@@ -349,32 +347,18 @@ class TrackedRecording:
             quote_formulas=quote_formulas,
         )
 
-    def plot(self) -> Figure:
-        """Picture of the tracks, see `fuzzytrack.plot_track`."""
-        from fuzzytrack.plotting import plot_track
+    def plot(self, gains: bool | None = None) -> Figure:
+        """Picture of the tracks, see `fuzzytrack.plotting.plot_tracks`.
 
-        columns, decoder = self.recording.columns, self.recording.decoder
-        # Cartesian positions are in the unit of the file.
-        unit = {"polar": "m", "geodetic": "m", "angle": "deg"}.get(columns.position, "")
-        if decoder is not None and decoder.period not in (None, 360.0):
-            unit = "rad"
-        results = self.results if decoder is None else _turns(self.results, decoder.period)
-        return plot_track(join_tracks(results), axes_names=columns.axes, unit=unit)[0]
+        Parameters
+        ----------
+        gains : bool, optional
+            Whether the gains are drawn below. Unless given, for up to three tracks.
+        """
+        return picture_of(self.recording, self.results, gains)
 
     def _repr_html_(self) -> str:
         """Table of the first tracks, with a small picture, for notebooks."""
         ids = [track.id for track in self.recording.tracks]
         tracks = list(zip(ids, self.results, strict=True))
-        return html_of(repr(self), tracks, self.findings.sentences(), self.plot())
-
-
-def _turns(results: Sequence[TrackResult], period: float | None) -> Sequence[TrackResult]:
-    """Results divided where an angle passes from a full circle to 0, so that no line joins them."""
-    if period is None:
-        return results
-    parts = []
-    for result in results:
-        jumps = np.abs(np.diff(result.filtered[:, 0])) > period / 2
-        edges = [0, *(np.flatnonzero(jumps) + 1).tolist(), len(result.time)]
-        parts += [part_of(result, slice(start, end)) for start, end in pairwise(edges)]
-    return parts
+        return html_of(repr(self), tracks, self.findings.sentences(), self.plot(gains=False))

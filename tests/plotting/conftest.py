@@ -55,3 +55,12 @@ def tracker(shipped):
 def result(tracker, flight):
     t, _, z = flight
     return tracker.run(t, z)
+
+
+@pytest.fixture(scope="session")
+def batch(tracker, flight):
+    """Six tracks of one target, of shape (2, 3)."""
+    t, truth, _ = flight
+    z = truth[:, None, None, :] + np.random.default_rng(3).normal(0, 9, (len(t), 2, 3, 2))
+    z[5, 1, 2] = np.nan
+    return tracker.run(t, z)

@@ -1,13 +1,10 @@
 import numpy as np
 import pytest
+from drawn_lines import lines
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from fuzzytrack.plotting import plot_errors, plot_track
-
-
-def lines(ax):
-    return {line.get_label(): np.array(line.get_data()).T for line in ax.lines}
+from fuzzytrack.plotting import plot_track
 
 
 def test_two_axes_are_a_plane_of_equal_scales(result, flight):
@@ -16,10 +13,10 @@ def test_two_axes_are_a_plane_of_equal_scales(result, flight):
     drawn = lines(ax)
     for label, expected in (
         ("true", truth),
-        ("measured", z),
+        ("plots", z),
         ("predicted", result.predicted),
         ("filtered", result.filtered),
-        ("coasted (no plot)", result.filtered[8:10]),
+        ("coasted", result.filtered[8:10]),
     ):
         np.testing.assert_array_equal(drawn[label], expected)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("x (m)", "y (m)")
@@ -42,30 +39,22 @@ def test_one_axis_is_over_time(tracker, flight):
     _, ax = plot_track(result, truth[:, 1], axes_names=["height"], unit="km")
     drawn = lines(ax)
     np.testing.assert_array_equal(drawn["true"], np.stack([t, truth[:, 1]], axis=-1))
-    assert "coasted (no plot)" not in drawn
+    assert "coasted" not in drawn
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("time (s)", "height (km)")
 
 
-@pytest.mark.parametrize(("n_axes", "names"), [(3, "x y z"), (4, "x1 x2 x3 x4")])
+@pytest.mark.parametrize(("n_axes", "names"), [(4, "x1 x2 x3 x4"), (5, "x1 x2 x3 x4 x5")])
 def test_more_axes_are_panels_over_time(tracker, flight, n_axes, names):
     t, _, z = flight
     many = np.repeat(z[:, :1], n_axes, axis=1) + np.arange(n_axes)
     _, axes = plot_track(tracker.run(t, many), unit="")
     assert [ax.get_ylabel() for ax in axes] == names.split()
     for k, ax in enumerate(axes):
-        np.testing.assert_array_equal(lines(ax)["measured"], np.stack([t, many[:, k]], axis=-1))
+        np.testing.assert_array_equal(lines(ax)["plots"], np.stack([t, many[:, k]], axis=-1))
     assert axes[-1].get_xlabel() == "time (s)"
     given = Figure().subplots(n_axes)
     _, axes = plot_track(tracker.run(t, many), ax=given)
     assert axes[0] is given[0]
-
-
-@pytest.fixture
-def batch(tracker, flight):
-    t, truth, _ = flight
-    z = truth[:, None, None, :] + np.random.default_rng(3).normal(0, 9, (len(t), 2, 3, 2))
-    z[5, 1, 2] = np.nan
-    return tracker.run(t, z)
 
 
 def test_one_track_of_a_batch(batch, flight):
@@ -77,54 +66,89 @@ def test_one_track_of_a_batch(batch, flight):
 
 
 def test_times_of_its_own(tracker, flight):
-    t, truth, z = flight
+    t, _, z = flight
     times = np.stack([t, t + 0.5], axis=1)
     result = tracker.run(times, np.stack([z, z], axis=1)[..., :1])
     _, ax = plot_track(result, track=1)
-    np.testing.assert_array_equal(lines(ax)["measured"][:, 0], t + 0.5)
-    _, ax = plot_errors(result, truth[:, :1], track=1)
-    np.testing.assert_array_equal(lines(ax)["prediction"][:, 0], t + 0.5)
-    with pytest.raises(ValueError, match="track: tracks with times of their own"):
-        plot_errors(result, truth[:, :1])
+    np.testing.assert_array_equal(lines(ax)["plots"][:, 0], t + 0.5)
 
 
-def test_error_is_the_distance_of_the_prediction(result, flight):
-    t, truth, _ = flight
-    _, ax = plot_errors({"one": result, "two": result}, truth, unit="km")
-    expected = np.linalg.norm(result.predicted - truth, axis=1)
-    for label in ("one", "two"):
-        time, error = lines(ax)[label].T
-        np.testing.assert_array_equal(time, t)
-        np.testing.assert_allclose(error, expected)
-    assert ax.get_xlabel() == "time (s)"
-    assert ax.get_ylabel() == "prediction error (km)"
-    assert [x.get_text() for x in ax.get_legend().get_texts()] == ["one", "two"]
-    assert len({line.get_color() for line in ax.lines}) == 2
-
-
-def test_error_of_one_axis(tracker, flight):
+def test_three_axes_are_a_plane_and_the_third_over_time(tracker, flight):
     t, truth, z = flight
-    result = tracker.run(t, z[:, 0])
-    _, ax = plot_errors(result, truth[:, 0], unit="")
-    expected = np.abs(result.predicted - truth[:, 0])
-    np.testing.assert_allclose(lines(ax)["prediction"][:, 1], expected)
-    assert ax.get_ylabel() == "prediction error"
+    height = np.stack([*z.T, 400 - z[:, 0]], axis=1)
+    actual = np.stack([*truth.T, 400 - truth[:, 0]], axis=1)
+    figure, axes = plot_track(tracker.run(t, height), actual, gains=True)
+    plane, third, gains = axes
+    np.testing.assert_array_equal(lines(plane)["plots"], height[:, :2])
+    np.testing.assert_array_equal(lines(third)["plots"], np.stack([t, height[:, 2]], axis=1))
+    np.testing.assert_array_equal(lines(third)["true"], np.stack([t, actual[:, 2]], axis=1))
+    assert plane.get_aspect() == 1.0
+    assert third.get_aspect() == "auto"
+    assert gains.get_ylabel() == "gains"
+    assert [ax.get_xlabel() for ax in axes] == ["x (m)", "time (s)", "time (s)"]
+    assert plane.get_legend() is None
+    assert figure.axes == [*axes]
 
 
-def test_error_of_a_batch_is_the_mean_square_over_its_tracks(batch, flight):
-    _, truth, _ = flight
-    full = np.broadcast_to(truth[:, None, None], batch.measured.shape)
-    squares = ((batch.predicted - full) ** 2).sum(axis=-1)
-    expected = np.sqrt(squares[2:].mean(axis=(1, 2)))
-    for actual in (truth, full):
-        _, ax = plot_errors({"batch": batch}, actual)
-        error = lines(ax)["batch"][:, 1]
-        assert np.isnan(error[:2]).all()
-        np.testing.assert_allclose(error[2:], expected)
-        assert ax.get_ylabel() == "prediction error, RMS over tracks (m)"
-    _, ax = plot_errors({"batch": batch}, truth, track=(0, 1))
-    np.testing.assert_allclose(lines(ax)["batch"][2:, 1] ** 2, squares[2:, 0, 1])
-    assert ax.get_ylabel() == "prediction error (m)"
+def test_positions_far_apart_are_in_kilometers(tracker, flight):
+    t, truth, z = flight
+    result = tracker.run(t, 100 * z)
+    _, ax = plot_track(result, 100 * truth)
+    assert ax.get_xlabel() == "x (km)"
+    np.testing.assert_allclose(lines(ax)["filtered"], result.filtered / 1000)
+    np.testing.assert_allclose(lines(ax)["true"], truth / 10)
+    _, ax = plot_track(result, unit="m")
+    assert ax.get_xlabel() == "x (m)"
+    np.testing.assert_array_equal(lines(ax)["plots"], 100 * z)
+
+
+def test_units_that_differ_have_no_equal_scales(result):
+    _, ax = plot_track(result, unit=("m", "ft"))
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x (m)", "y (ft)")
+    assert ax.get_aspect() == "auto"
+
+
+def test_start_and_end_are_marked(result):
+    _, ax = plot_track(result)
+    np.testing.assert_array_equal(lines(ax)["start"], result.filtered[:1])
+    np.testing.assert_array_equal(lines(ax)["end"], result.filtered[-1:])
+
+
+def test_long_tracks_are_lines_with_faint_plots(tracker):
+    t = np.arange(300.0)
+    z = np.stack([t, np.sin(t / 20)], axis=1)
+    _, ax = plot_track(tracker.run(t, z))
+    drawn = {line.get_label(): line for line in ax.lines}
+    assert set(drawn) == {"plots", "filtered", "start", "end"}
+    assert drawn["filtered"].get_marker() == "None"
+    assert drawn["plots"].get_alpha() < 1
+    # In the legend they are as anywhere.
+    handles = dict(
+        zip(
+            [x.get_text() for x in ax.get_legend().get_texts()],
+            ax.get_legend().legend_handles,
+            strict=True,
+        )
+    )
+    assert handles["plots"].get_alpha() == 1.0
+
+
+def test_one_plot_and_none(tracker):
+    _, ax = plot_track(tracker.run([1.0], [[3.0, 4.0]]), gains=False)
+    assert set(lines(ax)) == {"plots", "filtered", "start"}
+    _, axes = plot_track(tracker.run([0.0, 1.0], np.full((2, 2), np.nan)), gains=True)
+    assert axes[0].get_title() == "no plots"
+    assert axes[1].get_title().startswith("no gains")
+    assert lines(axes[0]) == {}
+    axes[0].figure.canvas.draw()
+
+
+def test_target_maneuvers_are_shaded_under_the_gains(tracker):
+    t = np.arange(40.0)
+    truth = np.where(t < 20, 0, (t - 20) ** 2)
+    _, (_, ax) = plot_track(tracker.run(t, truth + t % 2), truth, gains=True)
+    shaded = [p for p in ax.patches if p.get_label() == "target maneuvers"]
+    assert [(p.get_x(), p.get_x() + p.get_width()) for p in shaded] == [(19.0, 39.0)]
 
 
 @pytest.mark.parametrize(
@@ -139,11 +163,6 @@ def test_error_of_a_batch_is_the_mean_square_over_its_tracks(batch, flight):
         (lambda r, b, x: plot_track(b, x[:-1], track=(0, 0)), r"needed is \(20, 2, 3, 2\) or \(20"),
         (lambda r, b, x: plot_track(r, axes_names=["x"]), "axes_names: needs 2 names, got 1: x"),
         (lambda r, b, x: plot_track(r, ax=[]), "ax: needs 1"),
-        (lambda r, b, x: plot_errors({}, x), "results: must be a TrackResult or a mapping"),
-        (lambda r, b, x: plot_errors(7, x), "results: must be a TrackResult or a mapping"),
-        (lambda r, b, x: plot_errors({"a": 7}, x), "results: 'a' must be a TrackResult, got 7"),
-        (lambda r, b, x: plot_errors(b, x[:-1]), "truth: shape"),
-        (lambda r, b, x: plot_errors(b, x, track=9), "track: "),
     ],
 )
 def test_wrong_arguments(call, message, result, batch, flight):

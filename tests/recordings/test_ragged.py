@@ -1,6 +1,6 @@
 import numpy as np
 
-from fuzzytrack.recordings.ragged import batches, join_tracks, run_tracks
+from fuzzytrack.recordings.ragged import batches, run_tracks
 from fuzzytrack.trackers.catalog import make_tracker
 
 
@@ -31,13 +31,3 @@ def test_batches_hold_each_track_once_and_waste_little():
     assert sorted(k for b in found for k in b.members) == list(range(6))
     assert [sorted(b.members.tolist()) for b in found] == [[1, 2, 4], [3], [0], [5]]
     assert all((np.diff(b.times, axis=0) > 0).all() for b in found)
-
-
-def test_joined_tracks_have_a_gap_between_them():
-    tracker = make_tracker("fixed:alpha=0.5:beta=0.2")
-    tracks = [([0.0, 1.0], [[1.0], [2.0]]), ([5.0], [[7.0]])]
-    joined = join_tracks([tracker.run(t, z) for t, z in tracks])
-    np.testing.assert_array_equal(joined.time, [0, 1, np.nan, 5])
-    np.testing.assert_array_equal(joined.measured, [[1], [2], [np.nan], [7]])
-    assert joined.gains.beta.shape == joined.filtered.shape == (4, 1)
-    assert joined.state is None
