@@ -14,7 +14,6 @@ from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains.certificate import Certificate
 from fuzzytrack.gains.covariance_certificate import CovarianceCertificate
-from fuzzytrack.plurals import counted
 from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
 from fuzzytrack.schedulers.reachable_gains import sequence_steps
 
@@ -82,7 +81,7 @@ def certify(
                 "steps": limits,
                 "missed": missed,
                 "period": found.period,
-                "covered": _covered(found, limits),
+                "covered": found.covered,
                 "verdict": found.verdict,
                 "rate": found.rate,
                 "lyapunov": found.lyapunov,
@@ -94,7 +93,7 @@ def certify(
         )
         return
     say(f"{name}: {found.verdict}")
-    paragraph(f"Covered: {_covered(found, limits)}.")
+    paragraph(f"Covered: {found.covered}.")
     say()
     if found.verdict == "refuted":
         _print_sequence(rules, reach, found, sequence)
@@ -115,19 +114,6 @@ def _limits(text: str) -> tuple[float, float]:
     except ValueError:
         raise ValueError(f"--steps: expected LOW:HIGH, two times, got {text!r}") from None
     return low, high
-
-
-def _covered(found: Certificate, limits: tuple[float, float] | None) -> str:
-    """Times that a verdict is about."""
-    missed, period = found.times.missed, found.period
-    if limits is not None:
-        time = f"time between rows in [{limits[0]:g}, {limits[1]:g}] s, changing in any way"
-    else:
-        time = "constant T" if period is None else f"constant T = {period:g} s"
-    plots = f"up to {counted(missed, 'missed plot')} in a row" if missed else "no missed plots"
-    return f"{time}, {plots}" + (
-        f"; gains of a period of {period:g} s" if period is not None else ""
-    )
 
 
 def _print_sequence(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from fuzzytrack.cli.output import paragraph, print_json, say
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains.covariance_certificate import CovarianceCertificate
-from fuzzytrack.plurals import counted
 
 __all__ = ["print_covariance_certificate"]
 
@@ -23,7 +22,7 @@ def print_covariance_certificate(
                 "steps": (limits.times.low, limits.times.high),
                 "missed": limits.times.missed,
                 "sigma_ratio": limits.sigma_ratio,
-                "covered": _covered(found),
+                "covered": found.covered,
                 "verdict": found.verdict,
                 "missing": found.missing,
                 "noise": limits.noise,
@@ -34,7 +33,7 @@ def print_covariance_certificate(
         )
         return
     say(f"{name}: {found.verdict}")
-    paragraph(f"Covered: {_covered(found)}.")
+    paragraph(f"Covered: {found.covered}.")
     say()
     if found.missing:
         paragraph(f"The theorem does not apply: {found.missing}.")
@@ -66,14 +65,3 @@ def print_covariance_certificate(
         f"Sampled, not proven: in the worst sequences that a search found {left} is left of "
         "the error, measured in standard deviations of the filter's own covariance."
     )
-
-
-def _covered(found: CovarianceCertificate) -> str:
-    times = found.limits.times
-    if times.low == times.high:
-        time = f"constant T = {times.low:g} τ₀"
-    else:
-        time = f"time between rows in [{times.low:g}, {times.high:g}] τ₀, changing in any way"
-    if times.missed:
-        return f"{time}, up to {counted(times.missed, 'missed plot')} in a row"
-    return f"{time}, no missed plots"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.html_reprs import Cell, block, paragraph, table, tinted
 from fuzzytrack.reprs import shown
 
 __all__ = ["DEFUZZIFICATIONS", "Consequent", "Operators", "Rule", "RuleBase", "TableLayout"]
@@ -194,6 +195,24 @@ class RuleBase:
         variables = f"{', '.join(self.input_names)} -> {', '.join(self.output_names)}"
         return f"<RuleBase {shown(self.name)}: {variables}; {len(self.rules)} rules>"
 
+    def _repr_html_(self) -> str:
+        """The table of words, for notebooks; words are tinted by the order of their sets."""
+        return block(self.name, *self.html_parts())
+
+    def html_parts(self) -> tuple[str, ...]:
+        """Description, rules and operators, as parts of HTML."""
+        operators = self.operators
+        settings = ", ".join(f"{key} {value}" for key, value in self.scheduler)
+        said = (
+            f"and: {operators.conjunction}, or: {operators.disjunction}, "
+            f"defuzzification: {operators.defuzzification}"
+        )
+        rules = _html_list(self) if self.layout is None else _html_table(self, self.layout)
+        source = f"Source: {self.source}" if self.source else ""
+        notes = (said, f"scheduler: {settings}" if settings else "", source)
+        below = (paragraph(text, note=True) for text in notes)
+        return (paragraph(self.description), rules, *below)
+
     def __hash__(self) -> int:
         # Compiled code is looked up by scheduler, and so by rule base, at every step; a hash of all
         # parts would take longer than the step itself.
@@ -309,3 +328,45 @@ def _named(variables: tuple[Variable, ...], name: str, role: str) -> Variable:
             return variable
     allowed = ", ".join(v.name for v in variables)
     raise RuleBaseError(f"unknown {role} {name!r}; one of {allowed}")
+
+
+# -------------------------------------------------------------------- HTML
+
+
+def _html_table(rules: RuleBase, layout: TableLayout) -> str:
+    """Rules that were written as a table, as one."""
+    columns, rows = rules.input(layout.columns), rules.input(layout.rows)
+    width = len(columns.sets)
+    cells = [_html_cell(rules, rule, layout.cells) for rule in rules.rules]
+    body = [
+        [name, *cells[number * width : (number + 1) * width]]
+        for number, name in enumerate(rows.set_names)
+    ]
+    says = f"{' '.join(layout.cells)} by {layout.rows} (down) and {layout.columns} (across)"
+    heads = [f"{layout.rows} \\ {layout.columns}", *columns.set_names]
+    return paragraph(says) + table(heads, body, words=len(heads))
+
+
+def _html_list(rules: RuleBase) -> str:
+    """Rules of any form, one in a row."""
+    names = rules.output_names
+    rows = []
+    for number, rule in enumerate(rules.rules, 1):
+        conditions = dict(rule.conditions)
+        words = [str(number), *(conditions.get(name, "") for name in rules.input_names)]
+        rows.append([*words, *(_html_cell(rules, rule, [name]) for name in names)])
+    conditions_of = (f"if {name}" for name in rules.input_names)
+    heads = ["rule", *conditions_of, *(f"then {name}" for name in names)]
+    return table(heads, rows, words=len(heads), what="rules")
+
+
+def _html_cell(rules: RuleBase, rule: Rule, outputs: Sequence[str]) -> Cell:
+    """What a rule concludes of some outputs."""
+    words = []
+    for name in outputs:
+        shares = rules.output(name).shares()
+        for each in rule.consequents:
+            if each.output == name:
+                sure = "" if each.confidence == 1.0 else f" @{each.confidence:g}"
+                words.append(tinted(each.set_name + sure, shares[each.set_name]))
+    return Cell(" ".join(words))

@@ -21,6 +21,7 @@ from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.relation import compose, relation
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.table import InterpolationTable, build_table, default_nodes
+from fuzzytrack.html_reprs import Cell, block, table
 from fuzzytrack.reprs import call, summary
 
 __all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
@@ -138,6 +139,18 @@ class FuzzySystem:
         if self.table_nodes != default_nodes(len(self.rules.inputs)):
             options["table_nodes"] = self.table_nodes
         return call("FuzzySystem", [self.rules], options)
+
+    def _repr_html_(self) -> str:
+        """Its variables and rules, for notebooks."""
+        rules = self.rules
+        variables = (
+            [role, variable.axis_label, Cell(variable.drawing())]
+            for role, every in (("input", rules.inputs), ("output", rules.outputs))
+            for variable in every
+        )
+        drawn = table(["", "variable", "sets"], variables, words=3)
+        title = f"{rules.name}, evaluated by the method {self.method}"
+        return block(title, drawn, *rules.html_parts())
 
     # ---------------------------------------------------------------- evaluation
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.membership import TAILED, FuzzySet
+from fuzzytrack.html_reprs import block, curves
 from fuzzytrack.reprs import summary
 
 __all__ = ["GRIDS", "Universe", "Variable"]
@@ -264,3 +265,27 @@ class Variable:
         """Centers of the sets, shape (n_sets,)."""
         low, high = self.universe.low, self.universe.high
         return np.array([s.center(low, high) for s in self.sets])
+
+    def shares(self) -> dict[str, float]:
+        """Place of each set among all of them, by their centers: 0 is the lowest, 1 the highest."""
+        places = np.argsort(np.argsort(self.centers(), kind="stable"))
+        last = max(len(self.sets) - 1, 1)
+        alone = len(self.sets) == 1
+        return {
+            name: 0.5 if alone else place / last
+            for name, place in zip(self.set_names, places.tolist(), strict=True)
+        }
+
+    def _repr_html_(self) -> str:
+        """Picture of the sets, for notebooks."""
+        return block(self.axis_label, self.drawing())
+
+    def drawing(self) -> str:
+        """The sets as a small drawing in HTML."""
+        low, high = self.universe.low, self.universe.high
+        corners = [c for s in self.sets for c in s.breakpoints() if low <= c <= high]
+        # On both sides of a vertical flank.
+        beside = [b for c in corners for b in (np.nextafter(c, low), np.nextafter(c, high))]
+        x = np.unique([*np.linspace(low, high, 61), *corners, *beside])
+        grades = dict(zip(self.set_names, self.memberships(x), strict=True))
+        return curves(x, grades, list(self.shares().values()))

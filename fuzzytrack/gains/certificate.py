@@ -27,6 +27,8 @@ from fuzzytrack.gains.polygon_norm import ellipse, polygon_norm, reducing_polygo
 from fuzzytrack.gains.polygons import convex_hull
 from fuzzytrack.gains.resampled_region import resampled_region
 from fuzzytrack.gains.stability import is_stable
+from fuzzytrack.html_reprs import as_text, block, facts, paragraph, table
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 
 __all__ = [
@@ -92,6 +94,50 @@ class Certificate:
 
     def __repr__(self) -> str:
         return summary(self, "verdict", "rate", "growth", "vertices", "times", "sequence")
+
+    @property
+    def covered(self) -> str:
+        """The times and plots that the verdict is about, in words."""
+        low, high, missed = self.times.low, self.times.high, self.times.missed
+        if low < high:
+            time = f"time between rows in [{low:g}, {high:g}] s, changing in any way"
+        else:
+            time = "constant T" if self.period is None else f"constant T = {low:g} s"
+        plots = f"up to {counted(missed, 'missed plot')} in a row" if missed else "no missed plots"
+        belongs = "" if self.period is None else f"; gains of a period of {self.period:g} s"
+        return f"{time}, {plots}{belongs}"
+
+    def _repr_html_(self) -> str:
+        """The verdict, and the norm or the sequence that shows it, for notebooks."""
+        title = f"Stability: {self.verdict}"
+        covered = paragraph(f"Covered: {self.covered}.")
+        if self.verdict == "refuted":
+            said = (
+                "Gains of the set that, repeated in this order, make the error grow by a factor of "
+                f"{self.growth:.4f} a plot:"
+            )
+            pairs = zip(self.elapsed.tolist(), self.sequence.tolist(), strict=True)
+            rows = [
+                [f"{k}", as_text(time), *map(as_text, gains)]
+                for k, (time, gains) in enumerate(pairs, 1)
+            ]
+            heads = ["plot", "time since the last plot (s)", "α", "β"]
+            return block(title, covered, paragraph(said), table(heads, rows, what="plots"))
+        if self.verdict == "certified":
+            said = (
+                "For all gains of the set, in any order, the error shrinks at every plot to "
+                f"{self.rate:.4f} of what it was, or less."
+            )
+            corners = len(self.polygon)
+            norm = f"on a polygon of {corners} corners" if corners else "√(eᵀPe)"
+            (a, b), (_, d) = self.lyapunov.tolist()
+            matrix = "" if corners else f"P = [[{a:.4g}, {b:.4g}], [{b:.4g}, {d:.4g}]]"
+            return block(title, covered, paragraph(said), facts({"measure": norm, "": matrix}))
+        said = (
+            "No measure of the error was found that always shrinks (the best one may grow by a "
+            f"factor of {self.rate:.4f} a plot), nor a sequence of gains that makes the error grow."
+        )
+        return block(title, covered, paragraph(said))
 
     def norm(self, error: ArrayLike) -> Array:
         """Norm of the error that the certificate is about.

@@ -36,6 +36,8 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.elapsed_times import ElapsedTimes
 from fuzzytrack.gains.singer import fade
+from fuzzytrack.html_reprs import block, facts, paragraph, table
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 
 __all__ = ["CovarianceCertificate", "CovarianceLimits", "certify_covariance", "contraction"]
@@ -130,6 +132,35 @@ class CovarianceCertificate:
 
     def __repr__(self) -> str:
         return summary(self, "verdict", "missing", "contraction")
+
+    @property
+    def covered(self) -> str:
+        """The times and plots that the verdict is about, in words."""
+        times = self.limits.times
+        if times.low == times.high:
+            time = f"constant T = {times.low:g} τ₀"
+        else:
+            time = f"time between rows in [{times.low:g}, {times.high:g}] τ₀, changing in any way"
+        if times.missed:
+            return f"{time}, up to {counted(times.missed, 'missed plot')} in a row"
+        return f"{time}, no missed plots"
+
+    def _repr_html_(self) -> str:
+        """The verdict and how fast errors shrink, for notebooks."""
+        title = f"Stability of gains from a covariance: {self.verdict}"
+        covered = paragraph(f"Covered: {self.covered}.")
+        if self.missing:
+            missing = paragraph(f"The theorem does not apply: {self.missing}.")
+            return block(title, covered, missing)
+        limits = facts(
+            {
+                "noise (a₀)": _interval(self.limits.noise),
+                "retention (τ₀)": _interval(self.limits.retention),
+            }
+        )
+        rows = [[f"{plots}", f"{share:.3f}"] for plots, share in self.contraction.items()]
+        left = table(["plots", "share of the error that is left at most (sampled)"], rows)
+        return block(title, covered, limits, left)
 
 
 def certify_covariance(

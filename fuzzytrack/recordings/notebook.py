@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from fuzzytrack.html_reprs import as_text, block, paragraph, picture, table
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.trackers.result import TrackResult
 
@@ -39,38 +38,14 @@ def html_of(
     figure : Figure
         Picture of the tracks; it is closed.
     """
-    from html import escape
-
-    rows = [_row(escape(id or "track"), result) for id, result in tracks[:_LISTED]]
+    rows = [_row(id or "track", result) for id, result in tracks[:_LISTED]]
     more = len(tracks) - len(rows)
-    if more > 0:
-        rows.append(f"<tr><td colspan='{1 + len(_HEADS)}'>and {more} more</td></tr>")
-    head = "".join(f"<th>{name}</th>" for name in ("", *_HEADS))
-    below = f"<p>{escape('; '.join(faults))}</p>" if faults else ""
-    return (
-        f"<div><p>{escape(title)}</p><table><thead><tr>{head}</tr></thead>"
-        f"<tbody>{''.join(rows)}</tbody></table>{below}{_picture(figure)}</div>"
-    )
+    below = paragraph(f"and {more} more", note=True) if more > 0 else ""
+    faulty = paragraph("; ".join(faults), note=True)
+    return block(title, table(["", *_HEADS], rows), below, faulty, picture(figure, "tracks"))
 
 
-def _row(name: str, result: TrackResult) -> str:
+def _row(name: str, result: TrackResult) -> list[str]:
     totals = Totals.of([result]).summary
-    numbers = (
-        f"{totals['plots']}",
-        f"{totals['missed']}",
-        f"{totals['duration']:.6g}",
-        f"{totals['innovation_rms']:.4g}",
-    )
-    cells = "".join(f"<td>{number}</td>" for number in numbers)
-    return f"<tr><th>{name}</th>{cells}</tr>"
-
-
-def _picture(figure: Figure) -> str:
-    import matplotlib.pyplot as plt
-
-    figure.set_size_inches(5, 3.5)
-    data = io.BytesIO()
-    figure.savefig(data, format="png", dpi=80)
-    plt.close(figure)
-    code = base64.b64encode(data.getvalue()).decode()
-    return f"<img alt='tracks' src='data:image/png;base64,{code}'>"
+    counts = [f"{totals[key]}" for key in ("plots", "missed")]
+    return [name, *counts, as_text(totals["duration"]), as_text(totals["innovation_rms"])]

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.html_reprs import as_text, block, paragraph, table
+from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.ragged import Batch, batches
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import check_runs
@@ -59,6 +61,18 @@ class Comparison:
 
     def __repr__(self) -> str:
         return summary(self, "names", "runs", "seed", "sigma")
+
+    def _repr_html_(self) -> str:
+        """Table of errors, for notebooks."""
+        changes = ["", *(f"{100 * change:+.1f} %" for change in self.predicted_change[1:])]
+        numbers = map(as_text, self.predicted_rmse, self.predicted_error)
+        filtered = map(as_text, self.filtered_rmse, self.filtered_error)
+        rows = list(zip(self.names, numbers, filtered, changes, strict=True))
+        rows.append(("the plots themselves", "", as_text(self.measured_rmse), ""))
+        heads = ["RMSE of position (m)", "predicted", "filtered", f"against {self.names[0]}"]
+        told = f"{counted(self.runs, 'run')}, noise {self.sigma:g} m on each axis, seed {self.seed}"
+        best = int(np.argmin(self.predicted_rmse))
+        return block("Trackers on the same noise", table(heads, rows, best=best), paragraph(told))
 
     @property
     def runs(self) -> int:

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.gains.checks import number, positive
+from fuzzytrack.html_reprs import as_text, block, paragraph, table
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 from fuzzytrack.testbed import metrics, results_as
 from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
@@ -107,6 +109,26 @@ class Results:
 
     def __repr__(self) -> str:
         return summary(self, "scenario", "names", "runs", "seed", scans=len(self.time))
+
+    def _repr_html_(self) -> str:
+        """Table of errors, for notebooks."""
+        quantities = [q for q in QUANTITIES if q != "velocity" or self.velocity is not None]
+        columns = {
+            f"{quantity} RMSE ({'m/s' if quantity == 'velocity' else 'm'})": list(
+                map(as_text, self.rmse(quantity).tolist(), self.rmse_se(quantity).tolist())
+            )
+            for quantity in quantities
+        }
+        rows = list(zip(self.names, *columns.values(), strict=True))
+        plots = ["the plots themselves", "", as_text(self.measured_rmse)]
+        rows.append((*plots, *[""] * (len(columns) - 2)))
+        errors = np.nan_to_num(self.rmse(), nan=np.inf)
+        told = f"{counted(self.runs, 'run')} of {counted(len(self.time), 'scan')}, seed {self.seed}"
+        return block(
+            self.scenario,
+            table(["tracker", *columns], rows, best=int(np.argmin(errors))),
+            paragraph(told),
+        )
 
     @property
     def runs(self) -> int:

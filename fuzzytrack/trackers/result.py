@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.html_reprs import as_text, block, facts
 from fuzzytrack.trackers.state import Gains, TrackState
 
 __all__ = ["KEPT", "ON_REQUEST", "TrackResult", "checked_keep", "velocity_over_ground"]
@@ -85,6 +86,28 @@ class TrackResult:
 
     def __repr__(self) -> str:
         return f"TrackResult(shape={self.measured.shape}, kept={self.kept})"
+
+    def _repr_html_(self) -> str:
+        """Number of plots, and what was made of them, for notebooks."""
+        steps, *batch, n_axes = self.measured.shape
+        seen = ~np.isnan(self.measured).any(axis=-1)
+        told = {
+            "steps": f"{steps}",
+            "tracks": " × ".join(map(str, batch)) or "1",
+            "axes": f"{n_axes}",
+            "plots": f"{int(seen.sum())}, {int((~seen).sum())} missed",
+        }
+        if steps:
+            told["time (s)"] = f"{as_text(np.min(self.time))} to {as_text(np.max(self.time))}"
+        if "innovation" in self.kept:
+            squares = np.square(self.innovation).sum(axis=-1)
+            known = squares[~np.isnan(squares)]
+            told["RMS of innovations"] = as_text(np.sqrt(known.mean())) if len(known) else ""
+        if "gains" in self.kept:
+            for letter, gain in (("α", self.gains.alpha), ("β", self.gains.beta)):
+                used = gain[~np.isnan(gain)]
+                told[f"mean {letter}"] = as_text(used.mean()) if len(used) else ""
+        return block("Tracks" if batch else "Track", facts(told))
 
     @property
     def kept(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from fuzzytrack.html_reprs import as_text, block, paragraph, table
 from fuzzytrack.io.files import whole_file
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
@@ -119,6 +120,25 @@ class Tuned:
         as_good = [row.name for row in self.rows[1:-1] if not row.is_worse]
         others = " or ".join(f"the {name}" for name in as_good)
         return f"{found}; but not better than {others}" if as_good else found
+
+    def _repr_html_(self) -> str:
+        """The report and the numbers, for notebooks."""
+        rows = [
+            [row.name, as_text(row.training), as_text(row.held_out), row.change_text]
+            for row in self.rows
+        ]
+        heads = ["", "training", "held out", "tuned against it (95 %)"]
+        free = [
+            [name, f"{self.start[name]:.5g}", f"{value:.5g}"]
+            for name, value in self.numbers.items()
+        ]
+        return block(
+            f"{self.data}: {self.objective}",
+            table(heads, rows, best=len(rows) - 1 if self.worth_it else None),
+            paragraph(self.verdict),
+            table(["free number", "start", "tuned"], free, what="numbers"),
+            *(paragraph(note, note=True) for note in self.notes),
+        )
 
     @property
     def report(self) -> str:

@@ -83,7 +83,7 @@ def test_a_notebook_gets_a_table_and_a_picture(plots):
     t, z = plots
     ids = np.where(np.arange(60) % 2, "<b>", "a&b")
     html = ft.track({"t": t, "id": ids, "x": z[:, 0], "y": z[:, 1]}, id="id", sigma=3)._repr_html_()
-    assert "<th>&lt;b&gt;</th>" in html
+    assert ">&lt;b&gt;</th>" in html
     assert "a&amp;b" in html
     assert "data:image/png;base64," in html
     assert html.count("<tr>") == 3
