@@ -71,6 +71,12 @@ distances = dict(zip(names, found.predicted_distance))
 #: Lines that make the pictures, by the heading under which they are shown.
 PICTURES = {
     "Rule bases": [
+        'plot_rulebase("stiffness-damping")',
+        'plot_rulebase("maneuver", style="contour")',
+        'plot_rulebase("omega-schedule")',
+        'plot_rulebase("tipper")',
+        'plot_rules("chan-style")',
+        'plot_rules("maneuver")',
         'plot_memberships("stiffness-damping")',
         'plot_memberships("maneuver")',
         'plot_memberships("tipper", "tip")',

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import one_line
 from fuzzytrack.cli.output import print_json, print_table, say
+from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.cli.rulebase_tables import print_explanation, print_rulebase, review_lines
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.as_json import rulebase_as_json
@@ -21,8 +22,12 @@ from fuzzytrack.fuzzy.loading import (
     rulebase_path,
     shipped_rulebases,
 )
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.schedulers.review import Review, explanation, review
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["rulebase"]
 
@@ -58,14 +63,31 @@ def list_(json: options.Json = False) -> None:
 
 
 @rulebase.command()
-def show(name: Name, json: options.Json = False) -> None:
+def show(
+    name: Name,
+    plot: Annotated[
+        str | None,
+        typer.Option(metavar="FILE.png", help="Draw sets, rules and surfaces (or .pdf, .svg…)."),
+    ] = None,
+    json: options.Json = False,
+) -> None:
     """Show variables, sets and rules."""
     rules = load_rulebase(name)
+    if plot is not None:
+        save_picture(plot, lambda: _picture(rules), (rulebase_path(name),))
     if json:
         print_json(rulebase_as_json(rules))
     else:
         # A copy of a shipped rule base may still have its name.
         print_rulebase(rules, name if name == rules.name else f"{name}: {rules.name}")
+        if plot is not None:
+            say(f"wrote {plot}")
+
+
+def _picture(rules: RuleBase) -> Figure:
+    from fuzzytrack.plotting import plot_rulebase
+
+    return plot_rulebase(rules)[0]
 
 
 @rulebase.command()

@@ -7,15 +7,18 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.variable import Variable
 
 #: A rule base, or a name or path of one, or a system that has one.
 Rules = RuleBase | FuzzySystem | str | os.PathLike[str]
@@ -123,6 +126,18 @@ def legend_below(ax: Axes) -> None:
         frameon=False,
         borderaxespad=0.0,
     )
+
+
+def set_colors(variable: Variable, *, evenly: bool = False) -> Array:
+    """Color of each set of a variable by its center, from dark to light, shape (n_sets, 3).
+
+    With `evenly` neighbors are equally different in color, however near their centers are.
+    """
+    centers = variable.centers()
+    places = np.searchsorted(np.unique(centers), centers) if evenly else centers - centers.min()
+    # Without the yellow that is unreadable on white.
+    shares = 0.88 * places / (places.max() or 1)
+    return np.asarray(colormaps[COLORMAP](shares))[:, :3]
 
 
 def ticks(low: float, high: float, count: int) -> list[float]:

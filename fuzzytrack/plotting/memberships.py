@@ -59,19 +59,20 @@ def plot_memberships(
     figure, grid = shared.panels("axes", axes, len(names), columns=2, size=(5.0, 2.9))
     for ax, name in zip(grid, names, strict=True):
         role = "input" if name in base.input_names else "output"
-        _draw(ax, known[name], f"{role} {name}")
+        _draw(ax, known[name], f"{role} {name}", evenly=role == "input")
     return figure, grid
 
 
-def _draw(ax: Axes, variable: Variable, title: str) -> None:
+def _draw(ax: Axes, variable: Variable, title: str, *, evenly: bool) -> None:
     low, high = variable.universe.low, variable.universe.high
+    colors = shared.set_colors(variable, evenly=evenly)
     for number, fuzzy_set in enumerate(variable.sets):
         x, grades = _outline(fuzzy_set, variable.universe)
-        color = shared.COLORS[number % len(shared.COLORS)]
-        ax.plot(x, grades, color=color, linewidth=1.8, label=fuzzy_set.name)
+        # Not along the axis, where the set that is drawn last would hide the others.
+        zero = np.pad(grades == 0.0, 1, constant_values=True)
+        shown = np.where(zero[:-2] & zero[1:-1] & zero[2:], np.nan, grades)
+        ax.plot(x, shown, color=colors[number], linewidth=1.8, label=fuzzy_set.name)
     shared.finish(ax)
-    # Over the intervals where sets are zero, which have the color of the last one.
-    ax.spines["bottom"].set(linewidth=2.0, color="0.4", zorder=3)
     levels = _label_sets(ax, variable)
     shared.span_axis(ax, "x", low, high)
     margin = 0.01 * (high - low)

@@ -76,6 +76,15 @@ def test_show(run):
     assert found["outputs"][0]["universe"] == [0.25, 0.35, 41]
 
 
+def test_show_draws(run, fails, csv, tmp_path):
+    picture = tmp_path / "r.png"
+    result = run("rulebase", "show", "valve", "--plot", picture)
+    assert f"wrote {picture}" in result.stdout
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert json.loads(run("rulebase", "show", "valve", "--plot", picture, "--json").stdout)
+    assert "cannot draw .gif" in fails("rulebase", "show", "valve", "--plot", "a.gif")
+
+
 def test_show_a_list_of_rules(run, csv):
     text = run("rulebase", "show", csv(LIST, "a.yaml")).stdout
     assert "if a is lo then out is small\n" in text
