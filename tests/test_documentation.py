@@ -3,6 +3,7 @@
 import re
 import shlex
 import sys
+import tomllib
 from pathlib import Path
 from types import ModuleType
 
@@ -11,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import fuzzytrack as ft
-from fuzzytrack.cli.app import app, load_command
+from fuzzytrack.cli.app import COMMANDS, app, load_command
 from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.schedulers import schedulers
@@ -130,6 +131,21 @@ def test_the_page_of_commands_names_every_option(name):
     options = [parameter.opts for parameter in load_command(name).params]
     named = set(re.findall(r"(?<![\w-])--?\w[\w-]*", section.group(1)))
     assert [names for names in options if names[0].startswith("-") and not named & {*names}] == []
+
+
+def test_the_page_of_installation_has_every_extra():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    page = (ROOT / "docs" / "install.md").read_text()
+    rows = re.findall(r"^\| `fuzzytrack\[(\w+)\]` \| (\w+)", page, flags=re.M)
+    assert [name for name, _ in rows] == list(project["optional-dependencies"])
+    for name, first in rows[:-3]:
+        assert project["optional-dependencies"][name][0].startswith(first)
+
+
+def test_the_page_of_commands_has_every_command():
+    page = (ROOT / "docs" / "cli.md").read_text()
+    listed = re.findall(r"^\| `fuzzytrack ([a-z]+)", page, flags=re.M)
+    assert sorted(listed) == sorted(COMMANDS)
 
 
 def test_there_is_something_to_run():

@@ -57,6 +57,10 @@ COMMANDS = {
     ),
     "rulebase": ("rulebase:rulebase", "List, show, copy, check, explain and edit rule bases."),
     "design": ("design:design", "Compute gains by a design rule, and show their properties."),
+    "completion": (
+        "completion:completion",
+        "Print the script with which a shell completes commands, options and names.",
+    ),
     "cache": ("cache:cache", "Show where compiled code is kept and how much of it, or remove it."),
 }
 
@@ -67,7 +71,11 @@ class Application(Commands):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the command that is called."""
         name, _, rest = super().resolve_command(ctx, args)
-        return name, load_command(str(name)), rest
+        return name, self.loaded(str(name)), rest
+
+    def loaded(self, name: str) -> Any:
+        """Import a command."""
+        return load_command(name)
 
 
 def load_command(name: str) -> Any:
