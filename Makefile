@@ -46,7 +46,7 @@ $(VENV)/.installed-%: pyproject.toml | $(BIN)/python
 # ---------------------------------------------------------------- use
 
 demo: $(VENV)/.installed ## Track a turning target and write pictures and tables to demo/
-	$(BIN)/fuzzytrack demo -o demo
+	$(BIN)/fuzzytrack demo -o demo --force
 
 # ---------------------------------------------------------------- checks
 

@@ -16,7 +16,7 @@ from fuzzytrack.cli.compare import (
     print_comparison,
     trackers_named,
 )
-from fuzzytrack.cli.output import output_folder, print_json, progress, say
+from fuzzytrack.cli.output import RESULTS, output_folder, print_json, progress, say, write_json
 from fuzzytrack.cli.pictures import save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.system import FuzzySystem
@@ -36,13 +36,14 @@ __all__ = ["demo"]
 
 
 SIGMA = 50.0
-RULES = "stiffness-damping"
+# The tracker that we recommend, whose track is drawn, and the published rule base beside it.
+BEST = "maneuver"
+PUBLISHED = "stiffness-damping"
 
 
 def demo(
-    output: Annotated[
-        str, typer.Option("--output", "-o", metavar="DIR", help="Folder for what is made.")
-    ] = "demo",
+    output: options.Folder = "demo",
+    force: options.Force = False,
     seed: options.Seed = 0,
     runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 100,
     json: options.Json = False,
@@ -52,14 +53,16 @@ def demo(
     A target flies straight at 150 m/s, turns by 180 degrees at 3 degrees a second, and flies
     straight again; it is seen every second with 50 m of noise on each axis.
     """
-    folder = output_folder(output)
+    folder = output_folder(str(output), force=force)
     t, truth = turning_target()
     trackers = trackers_named(DEFAULT_TRACKERS)
     with progress("comparing") as watch:
         found = run_comparison(trackers, t, truth, SIGMA, runs, seed, watch)
     noise = np.random.default_rng(seed).standard_normal(truth.shape)
     results = {name: tr.run(t, truth + SIGMA * noise, SIGMA) for name, tr in trackers.items()}
-    written = _tables(folder, found, results[RULES])
+    written = [folder / RESULTS]
+    write_json(written[0], found.to_json_dict())
+    written += _tables(folder, found, results[BEST])
     written += _pictures(folder, truth, results)
     if json:
         print_json({**found.to_json_dict(), "files": written})
@@ -84,27 +87,26 @@ def _pictures(
     truth: Array,
     results: dict[str, TrackResult],
 ) -> list[Path]:
-    """Draw the rule base, the gains and the track."""
-    rules = load_rulebase(RULES)
+    """Draw the rule bases, the gains, the track and the errors."""
 
-    def memberships() -> Figure:
+    def memberships(name: str) -> Figure:
         from fuzzytrack.plotting import plot_memberships
 
-        return plot_memberships(rules)[0]
+        return plot_memberships(load_rulebase(name))[0]
 
     def gain_plane() -> Figure:
         from fuzzytrack.plotting import plot_gain_plane
 
-        fixed, *others = results
         # Fixed gains are a single point, drawn as a mark above those of the others.
-        point = tuple(float(getattr(results[fixed].gains, n)[-1, 0]) for n in ("alpha", "beta"))
-        visited = {name: results[name].gains for name in others}
-        return plot_gain_plane(visited, rules, mark={fixed: (point[0], point[1])})[0]
+        gains = {name: result.gains for name, result in results.items()}
+        marks = {name: gains.pop(name) for name in results if name.startswith("fixed:")}
+        points = {n: (float(g.alpha[-1, 0]), float(g.beta[-1, 0])) for n, g in marks.items()}
+        return plot_gain_plane(gains, load_rulebase(PUBLISHED), mark=points)[0]
 
     def track() -> Figure:
         from fuzzytrack.plotting import plot_track
 
-        return plot_track(results[RULES], truth)[0]
+        return plot_track(results[BEST], truth)[0]
 
     def errors() -> Figure:
         from fuzzytrack.plotting import plot_errors
@@ -112,11 +114,13 @@ def _pictures(
         return plot_errors(results, truth)[0]
 
     drawings: dict[str, Callable[[], Figure]] = {
-        "surfaces": lambda: surfaces(FuzzySystem(rules), 101),
-        "memberships": memberships,
-        "gain-plane": gain_plane,
         "track": track,
         "errors": errors,
+        "gain-plane": gain_plane,
+        f"{BEST}-surfaces": lambda: surfaces(FuzzySystem(load_rulebase(BEST)), 101),
+        f"{BEST}-memberships": lambda: memberships(BEST),
+        f"{PUBLISHED}-surfaces": lambda: surfaces(FuzzySystem(load_rulebase(PUBLISHED)), 101),
+        f"{PUBLISHED}-memberships": lambda: memberships(PUBLISHED),
     }
     paths = []
     with progress("drawing") as watch:

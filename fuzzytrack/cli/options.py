@@ -12,6 +12,8 @@ from fuzzytrack.yamltree import suggestion
 
 __all__ = [
     "Dt",
+    "Folder",
+    "Force",
     "Gate",
     "Json",
     "Plots",
@@ -45,6 +47,11 @@ Sigma = Annotated[
     typer.Option("--sigma", metavar="S", help="Standard deviation of a measured position, m."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, for programs.")]
+Folder = Annotated[
+    str | None,
+    typer.Option("--output", "-o", metavar="DIR", help="Folder for the results; made if need be."),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace the results that are in the folder.")]
 Plugins = Annotated[
     list[str] | None,
     typer.Option(

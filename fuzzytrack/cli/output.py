@@ -14,10 +14,12 @@ from typing import Any
 import typer
 
 from fuzzytrack.cli.text_table import table_lines, wrapped
+from fuzzytrack.errors import DataError
 from fuzzytrack.json_types import plain
 from fuzzytrack.tasks import Progress
 
 __all__ = [
+    "RESULTS",
     "output_folder",
     "paragraph",
     "print_json",
@@ -29,6 +31,9 @@ __all__ = [
     "with_error",
     "write_json",
 ]
+
+#: File in a folder of results: what `--json` prints.
+RESULTS = "results.json"
 
 _ARGUMENT = re.compile(r"`(\w+)`")
 
@@ -119,11 +124,35 @@ def write_json(path: Path, value: Any, indent: int = 2) -> None:
         draft.write_text(text + "\n", encoding="utf-8")
 
 
-def output_folder(path: str) -> Path:
-    """Folder for output, made if it does not exist; OSError if it is a file or cannot be made."""
+def output_folder(path: str, *, force: bool = False, resume: bool | None = None) -> Path:
+    """Folder for the results of a command, made if it does not exist.
+
+    Parameters
+    ----------
+    path : str
+        The folder.
+    force : bool
+        Whether it may hold files; those of the same names are replaced.
+    resume : bool, optional
+        Whether the results in it are continued; None for a command that cannot.
+
+    Raises
+    ------
+    DataError
+        If it holds files, and neither `force` nor `resume` is given.
+    OSError
+        If it is a file or cannot be made.
+    """
+    from fuzzytrack.io.files import check_output_folder
+
     folder = Path(path)
-    if folder.exists() and not folder.is_dir():
-        raise NotADirectoryError(None, "is not a folder", path)
+    if not (folder.is_dir() and any(folder.iterdir())):
+        check_output_folder(path)
+    elif not (force or resume):
+        more = "" if resume is None else ", continue with --resume"
+        raise DataError(
+            f"{path}: holds files already; name another folder{more}, or replace them with --force"
+        )
     folder.mkdir(exist_ok=True)
     return folder
 

@@ -11,6 +11,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import (
+    RESULTS,
     output_folder,
     print_json,
     print_table,
@@ -35,10 +36,8 @@ def reproduce(
         typer.Option(min=1, help="Monte Carlo runs. [default: each paper's own]"),
     ] = None,
     seed: options.Seed = 0,
-    output: Annotated[
-        str | None,
-        typer.Option("--output", "-o", metavar="DIR", help="Folder for JSON and pictures."),
-    ] = None,
+    output: options.Folder = None,
+    force: options.Force = False,
     json: options.Json = False,
 ) -> None:
     """Rebuild the experiments of a paper, and compare its numbers with ours.
@@ -48,13 +47,14 @@ def reproduce(
     chosen = list(PAPERS) if paper == "all" else [paper]
     if chosen[0] not in PAPERS:
         raise ValueError(f"no such paper {paper!r}{suggestion(paper, [*PAPERS, 'all'])}")
-    folder = None if output is None else output_folder(output)
+    folder = None if output is None else output_folder(output, force=force)
     with progress(f"rebuilding {paper}") as watch:
         found = reproduce_all(chosen, runs, seed, watch)
-    written = [] if folder is None else _write(folder, found)
+    one = found[0].to_json_dict()
+    results = one if paper != "all" else {"papers": [each.to_json_dict() for each in found]}
+    written = [] if folder is None else _write(folder, found, results)
     if json:
-        one = found[0].to_json_dict()
-        print_json(one if paper != "all" else {"papers": [f.to_json_dict() for f in found]})
+        print_json(results)
         return
     for each in found:
         _print(each)
@@ -62,11 +62,9 @@ def reproduce(
         say(f"wrote {path}")
 
 
-def _write(folder: Path, found: list[Reproduction]) -> list[Path]:
-    written = []
-    for each in found:
-        written.append(folder / f"{each.paper}.json")
-        write_json(written[-1], each.to_json_dict())
+def _write(folder: Path, found: list[Reproduction], results: dict[str, Any]) -> list[Path]:
+    written = [folder / RESULTS]
+    write_json(written[0], results)
     drawings = [(each.paper, *item) for each in found for item in each.pictures.items()]
     with progress("drawing") as watch:
         for number, (paper, name, draw) in enumerate(drawings, 1):

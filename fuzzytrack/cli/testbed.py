@@ -12,6 +12,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.cli.compare import print_marks, trackers_named
 from fuzzytrack.cli.output import (
+    RESULTS,
     output_folder,
     paragraph,
     print_json,
@@ -27,6 +28,7 @@ from fuzzytrack.io.files import check_output
 from fuzzytrack.plurals import counted
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, scenario_source, shipped_scenarios
+from fuzzytrack.testbed.chunk_store import remove_chunks
 from fuzzytrack.testbed.marks import marks_of
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
 
 __all__ = ["experiment"]
 
-_FILES = ("results.json", "report.html")
+_FILES = (RESULTS, "report.html")
 
 
 def experiment(
@@ -53,10 +55,8 @@ def experiment(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Dask cluster, e.g. tcp://host:8786.")
     ] = None,
-    output: Annotated[
-        str | None,
-        typer.Option("--output", "-o", metavar="DIR", help="Folder for report and results."),
-    ] = None,
+    output: options.Folder = None,
+    force: options.Force = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue the job whose chunks are in the folder.")
     ] = False,
@@ -73,12 +73,14 @@ def experiment(
         return
     if resume and output is None:
         raise ValueError("--resume needs -o DIR, the folder of the job to continue")
+    if resume and force:
+        raise ValueError("--resume and --force: give one of them")
     options.load_plugins(plugin)
     drawn = load_scenario(scenario)
     chosen = _chosen(trackers, drawn)
     try:
         with workers(jobs, scheduler) as executor, progress("simulating") as watch:
-            folder = None if output is None else _folder(output)
+            folder = None if output is None else _folder(output, force, resume)
             found = monte_carlo(
                 drawn,
                 chosen,
@@ -124,9 +126,11 @@ def _chosen(text: str | None, scenario: Scenario) -> Mapping[str, Tracker] | Non
 # -------------------------------------------------------------------- folder
 
 
-def _folder(output: str) -> Path:
+def _folder(output: str, force: bool, resume: bool) -> Path:
     """Folder, made if it does not exist; checks before the work that its files can be written."""
-    folder = output_folder(output)
+    folder = output_folder(output, force=force, resume=resume)
+    if force:
+        remove_chunks(folder)
     for name in _FILES:
         check_output(folder / name)
     return folder

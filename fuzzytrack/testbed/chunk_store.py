@@ -20,7 +20,7 @@ from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.version import __version__
 
-__all__ = ["ChunkStore"]
+__all__ = ["ChunkStore", "remove_chunks"]
 
 
 _FOLDER, _JOB = "chunks", "job.json"
@@ -108,6 +108,12 @@ class ChunkStore:
 
     def _path(self, runs: range) -> Path:
         return self.folder / f"runs-{runs.start:09d}-{len(runs)}.npz"
+
+
+def remove_chunks(folder: str | os.PathLike[str]) -> None:
+    """Remove the finished chunks of the job in a folder, if there are any."""
+    for file in (Path(folder) / _FOLDER).glob("*.npz"):
+        file.unlink(missing_ok=True)
 
 
 def _job(

@@ -252,13 +252,15 @@ def test_demo(run, tmp_path, monkeypatch):
     folder = tmp_path / "made"
     result = run("demo", "-o", folder, "--runs", "1", "--json")
     found = json.loads(result.stdout)
-    assert len(found["files"]) == 7
-    assert len(drawn) == 5
+    assert len(found["files"]) == 10
+    assert len(drawn) == 7
+    assert json.loads((folder / "results.json").read_text())["trackers"] == found["trackers"]
+    assert found["trackers"][0]["name"] == "maneuver"
     assert [r["tracker"] for r in rows(folder / "comparison.csv")] == [
         t["name"] for t in found["trackers"]
     ]
     assert len(rows(folder / "track.csv")) == 181
-    again = run("demo", "-o", folder, "--runs", "1")
+    again = run("demo", "-o", folder, "--runs", "1", "--force")
     assert "RMSE of position" in again.stdout
     assert f"wrote {folder / 'track.png'}" in again.stdout
     from matplotlib import pyplot as plt
@@ -268,7 +270,24 @@ def test_demo(run, tmp_path, monkeypatch):
 
 def test_demo_needs_a_folder(fails, plots):
     assert fails("demo", "-o", plots).endswith("is not a folder")
-    assert "No such file" in fails("demo", "-o", plots.parent / "no" / "where")
+    assert "there is no folder" in fails("demo", "-o", plots.parent / "no" / "where")
+
+
+@pytest.mark.parametrize(
+    ("words", "more"),
+    [
+        (("demo",), ""),
+        (("testbed", "strong"), ", continue with --resume"),
+        (("reproduce", "zhang-jiang"), ""),
+    ],
+)
+def test_a_folder_with_files_is_left_alone_by_every_command(fails, plots, words, more):
+    folder = plots.parent
+    assert fails(*words, "-o", folder) == (
+        f"error: {folder}: holds files already; name another folder{more}, "
+        "or replace them with --force"
+    )
+    assert [path.name for path in folder.iterdir()] == ["plots.csv"]
 
 
 # -------------------------------------------------------------------- real data

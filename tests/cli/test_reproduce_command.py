@@ -36,8 +36,8 @@ def test_files_are_written(run, tmp_path):
     result = run("reproduce", "zhang-jiang", "-o", tmp_path / "out")
     assert result.exit_code == 0
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"zhang-jiang.json", "zhang-jiang-gains-and-gates.png"}
-    assert json.loads((tmp_path / "out" / "zhang-jiang.json").read_text())["rows"]
+    assert names == {"results.json", "zhang-jiang-gains-and-gates.png"}
+    assert json.loads((tmp_path / "out" / "results.json").read_text())["rows"]
 
 
 def test_all_papers_in_one_list(run, monkeypatch):

@@ -87,7 +87,8 @@ def test_folder(run, fails, own, tmp_path):
     words = ("testbed", own, "--trackers", TRACKERS, "-o", folder)
     # What an interruption may leave.
     monte_carlo(load_scenario(own), experimenting.trackers_named(TRACKERS), 10, 0, folder=folder)
-    assert "holds results of an earlier run" in fails(*words, "--runs", 10)
+    assert "holds files already; name another folder, continue with" in fails(*words, "--runs", 10)
+    assert "give one of them" in fails(*words, "--resume", "--force")
     result = run(*words, "--runs", 15, "--resume")
     assert (result.exit_code, result.stderr) == (0, "")
     files = {p.name for p in folder.iterdir()} - {"chunks"}
@@ -99,6 +100,10 @@ def test_folder(run, fails, own, tmp_path):
     alone = json.loads(run(*words[:-2], "--runs", 15, "--json").stdout)
     del alone["files"]
     assert after == alone
+    # Another job takes the place of the finished one.
+    assert run(*words, "--runs", 2, "--seed", 5, "--force").exit_code == 0
+    assert json.loads((folder / "results.json").read_text())["runs"] == 2
+    assert [file.name for file in (folder / "chunks").glob("*.npz")] == ["runs-000000000-2.npz"]
 
 
 def test_processes_give_the_same_numbers(run):
@@ -141,7 +146,7 @@ def test_no_dask_there(fails, own, monkeypatch):
         (("mixed", "--jobs", "2", "--scheduler", "x"), "error: --jobs and --scheduler: give one"),
         (("mixed", "--trackers", "a,a"), "error: --trackers: 'a' is given twice"),
         (("mixed", "--trackers", "a"), "error: tracker 'a': no such tracker"),
-        (("mixed", "-o", "no/such"), "error: no/such: No such file"),
+        (("mixed", "-o", "no/such"), "error: no/such: there is no folder"),
     ],
 )
 def test_bad_words(fails, words, expected):
