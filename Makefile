@@ -82,7 +82,9 @@ format: $(VENV)/.installed-test ## Put the code into the one format
 	$(BIN)/ruff format .
 
 docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; a warning is an error
+	@rm -rf docs/_build/html
 	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/python .ci/pages.py docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
 
 fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases and rows of CSV, FUZZ_FILES files of each other format

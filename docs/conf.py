@@ -61,6 +61,9 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples",
     "gallery_dirs": "gallery",
     "filename_pattern": r"plot_",
+    "subsection_order": [
+        f"../examples/{folder}" for folder in ("start", "rules", "tracking", "gains", "papers")
+    ],
     "within_subsection_order": "FileNameSortKey",
     "abort_on_example_error": True,
     "copyfile_regex": r".*\.(csv|yaml)",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-EXAMPLES = sorted((ROOT / "examples").glob("plot_*.py"))
+EXAMPLES = sorted((ROOT / "examples").glob("*/plot_*.py"))
 
 
 @pytest.fixture(scope="module")
@@ -19,6 +19,8 @@ def gallery():
 
 def test_the_documentation_runs_every_example(gallery):
     assert (ROOT / "docs" / gallery["examples_dirs"]).resolve() == ROOT / "examples"
+    folders = {(ROOT / "docs" / each).resolve() for each in gallery["subsection_order"]}
+    assert {path.parent for path in EXAMPLES} == folders
     assert gallery["abort_on_example_error"]
     assert not {"plot_gallery", "ignore_pattern", "expected_failing_examples"} & gallery.keys()
     assert len(EXAMPLES) >= 17

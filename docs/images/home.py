@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 import fuzzytrack as ft
 from fuzzytrack.trackers import TrackResult
 
-SIGMA, SPEED, RUNS = 250.0, 200.0, 500  # m, m/s
+SIGMA, SPEED = 250.0, 200.0  # m, m/s
 # When turns begin and end (s), and through how many degrees they go: about 5 m/s².
 TURNS = ((100, 226, 180), (330, 424, -135))
 TRACKERS = {
@@ -102,7 +102,6 @@ def draw_errors(ax: Axes, t: NDArray[np.float64], errors: dict[str, NDArray[np.f
         wide = 3.0 if name == "rule base" else 1.8
         ax.plot(t[3:], error[3:], color=color, linewidth=wide, label=name)
     ax.set(xlabel="time (s)", ylabel="error of the prediction (m)", xlim=(0, t[-1]), ylim=(0, 1300))
-    ax.set_title(f"RMS error of {RUNS} such tracks", loc="left")
     ax.legend(loc="upper center", bbox_to_anchor=(0.45, -0.16), ncol=3, columnspacing=1.4)
 
 
@@ -114,10 +113,10 @@ def style(palette: Palette) -> dict[str, object]:
     return dict.fromkeys(ink, palette.ink) | bare | text
 
 
-def main(folder: Path) -> None:
+def main(folder: Path, runs: int = 500) -> None:
     """Write track-light.png, track-dark.png, errors-light.png and errors-dark.png."""
     t, truth = target()
-    plots = truth[:, None, :] + np.random.default_rng(4).normal(0, SIGMA, (len(t), RUNS, 2))
+    plots = truth[:, None, :] + np.random.default_rng(4).normal(0, SIGMA, (len(t), runs, 2))
     trackers = {name: ft.AlphaBetaTracker(text) for name, text in TRACKERS.items()}
     results = {name: tracker.run(t, plots, SIGMA) for name, tracker in trackers.items()}
     errors = {
@@ -133,6 +132,7 @@ def main(folder: Path) -> None:
                     draw_track(ax, shown, palette)
                 else:
                     draw_errors(ax, t, errors, palette)
+                    ax.set_title(f"RMS error of {runs} such tracks", loc="left")
                 figure.savefig(folder / f"{name}-{page}.png", dpi=120, transparent=True)
                 plt.close(figure)
 
