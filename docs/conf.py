@@ -70,6 +70,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "remove_config_comments": True,
     "show_memory": False,
+    "thumbnail_size": (560, 400),
     "min_reported_time": 5,
     # Its tables of times load scripts from the network.
     "write_computation_times": False,
@@ -87,7 +88,7 @@ html_theme_options = {
     "show_toc_level": 2,
     # As many as docs/index.md names, on one line at 1280 pixels.
     "header_links_before_dropdown": 7,
-    "secondary_sidebar_items": {"**": ["page-toc"], "index": []},
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "gallery/index": []},
     "footer_start": ["copyright"],
     "footer_end": [],
 }
