@@ -21,10 +21,10 @@ export MPLBACKEND ?= Agg
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test lowest constraints referee lint format docs fuzz bench clean distclean
+.PHONY: help environment lowest-environment demo test lowest constraints referee lint format docs fuzz bench clean distclean
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 # ---------------------------------------------------------------- environment
 
@@ -42,6 +42,13 @@ $(VENV)/.installed-%: pyproject.toml | $(BIN)/python
 	@touch $@
 
 .PRECIOUS: $(VENV)/.installed-%
+
+# Both extras at once: pip then looks each package up once.
+environment: pyproject.toml | $(BIN)/python ## Install what test, lint and docs need
+	$(PIP) install --editable '.[test,docs]'
+	@touch $(VENV)/.installed-test $(VENV)/.installed-docs
+
+lowest-environment: $(LOWEST)/.installed
 
 # ---------------------------------------------------------------- use
 
