@@ -61,9 +61,12 @@ def plot_reading(
         _Text, _option("COL", "Column of its heading (degrees), for relative azimuths.")
     ] = None,
     sigma: Annotated[
-        str,
-        _option("S|S,S|COL|COL,COL|auto", "Standard deviation of the plots, m; or its columns."),
-    ] = "auto",
+        _Text,
+        _option(
+            "S|S,S|COL|COL,COL|auto",
+            "Standard deviation of the plots, m; or its columns. [default: auto]",
+        ),
+    ] = None,
     sigma_range: Annotated[_Text, _option("S|COL", "The same of range, m.")] = None,
     sigma_azimuth: Annotated[_Text, _option("S|COL", "The same of azimuth, degrees.")] = None,
     sigma_elevation: Annotated[_Text, _option("S|COL", "The same of elevation, degrees.")] = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any
@@ -11,6 +10,8 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import printable
+from fuzzytrack.cli.follow import FollowOptions, follow
+from fuzzytrack.cli.noise_words import noise_json, noise_sentence
 from fuzzytrack.cli.output import (
     print_json,
     print_table,
@@ -18,7 +19,6 @@ from fuzzytrack.cli.output import (
     say,
     say_aside,
     show,
-    with_error,
 )
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
@@ -98,6 +98,35 @@ def track(
     partitions: Annotated[
         int, typer.Option(min=1, metavar="P", help="Tasks and files that tracks are divided among.")
     ] = 16,
+    follow_feed: Annotated[
+        bool,
+        typer.Option("--follow", help="Read lines from standard input, and answer each at once."),
+    ] = False,
+    lateness: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S", help="With --follow, put plots up to S seconds late in place. [default: 0]"
+        ),
+    ] = None,
+    forget: Annotated[
+        float | None,
+        typer.Option(metavar="S", help="With --follow, forget tracks silent for S seconds."),
+    ] = None,
+    state: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="With --follow, save the state, and go on from it."),
+    ] = None,
+    feed: Annotated[
+        str | None,
+        typer.Option(
+            metavar="again|onward",
+            help="From a state, lines come from the first one again, or go on. [default: again]",
+        ),
+    ] = None,
+    compiled: Annotated[
+        bool,
+        typer.Option("--compile/--no-compile", help="With --follow, compile before answering."),
+    ] = True,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
@@ -107,6 +136,16 @@ def track(
     """
     options.load_plugins(plugin)
     width = number_or(gate, "--gate", {"auto": "auto", "none": None})
+    live = FollowOptions(
+        lateness=lateness, forget=forget, state=state, feed=feed, compiled=compiled
+    )
+    if follow_feed:
+        _check_follow(plot, chunk_rows, jobs, scheduler)
+        follow(
+            files, reading, tracker, width, output, live, json=json, quote_formulas=quote_formulas
+        )
+        return
+    live.check_unused()
     apart = scheduler is not None or jobs > 1
     large = len(files) == 1 and _is_large(files[0]) and _goes_on(tracker)
     in_pieces = apart or chunk_rows is not None or any(map(os.path.isdir, files)) or len(files) > 1
@@ -177,6 +216,22 @@ def _check_pieces(sort: bool, plot: str | None) -> None:
             )
 
 
+def _check_follow(
+    plot: str | None, chunk_rows: int | None, jobs: int, scheduler: str | None
+) -> None:
+    for option, given in (
+        ("--plot", plot is not None),
+        ("--chunk-rows", chunk_rows is not None),
+        ("--jobs", jobs > 1),
+        ("--scheduler", scheduler is not None),
+    ):
+        if given:
+            raise ValueError(
+                f"{option}: needs the whole recording; not with --follow. Track the file that was "
+                "recorded meanwhile"
+            )
+
+
 def _folder(output: str | None) -> str:
     if output is None or output == STANDARD_OUTPUT:
         raise ValueError("--jobs and --scheduler need -o DIR, a folder for the tracks")
@@ -221,41 +276,6 @@ def _label(track: Track) -> str:
     return f"{id} ({track.segment + 1})" if track.segment else id
 
 
-def _noise_sentence(decoder: PlotDecoder) -> str:
-    """Standard deviations of the plots in words; empty if they are not known."""
-    if not decoder.noise:
-        return ""
-    errors = decoder.noise_errors or (None,) * len(decoder.noise)
-    shown = [_one_noise(*pair) for pair in zip(decoder.noise, errors, strict=True)]
-    if len(set(shown)) == 1 and not decoder.noise_is_polar:
-        return shown[0]
-    names = _noise_names(decoder)
-    return ", ".join(f"{name} {each}" for name, each in zip(names, shown, strict=True))
-
-
-def _noise_names(decoder: PlotDecoder) -> tuple[str, ...]:
-    columns = decoder.columns
-    return columns.read if decoder.noise_is_polar else columns.axes
-
-
-def _one_noise(sigma: float | str | None, error: float | None) -> str:
-    if isinstance(sigma, str):
-        return f"column {sigma}"
-    value = math.nan if sigma is None else sigma
-    return show(value) if error is None else f"{with_error(value, error)} (estimated)"
-
-
-def _noise_json(decoder: PlotDecoder) -> dict[str, Any]:
-    """Standard deviations and their errors by coordinate; null where they are not known."""
-    names = _noise_names(decoder)
-    sigma = dict(zip(names, decoder.noise, strict=True)) if decoder.noise else None
-    errors = decoder.noise_errors
-    return {
-        "sigma": sigma,
-        "sigma_error": dict(zip(names, errors, strict=True)) if errors else None,
-    }
-
-
 def _print_json(run: _Run, read: dict[str, Any], written: dict[str, Any]) -> None:
     columns = run.decoder.columns
     tracks: dict[str, Any] = {"tracks": None, "number": run.total.tracks}
@@ -268,7 +288,7 @@ def _print_json(run: _Run, read: dict[str, Any], written: dict[str, Any]) -> Non
     total = {"total": run.total.summary}
     found = {
         "columns": asdict(columns),
-        **_noise_json(run.decoder),
+        **noise_json(run.decoder),
         **run.findings.to_json_dict(),
     }
     print_json(
@@ -280,7 +300,7 @@ def _print_table(run: _Run) -> None:
     columns = run.decoder.columns
     say(f"columns: {columns.sentence}")
     say(f"tracker: {run.tracker}")
-    noise = _noise_sentence(run.decoder)
+    noise = noise_sentence(run.decoder)
     if noise:
         say(f"sigma: {noise}")
     for note in run.findings.notes:

@@ -8,7 +8,7 @@ that pieces of any size and streams decide alike.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any, Literal, get_args
@@ -24,9 +24,9 @@ from fuzzytrack.io.equal_times import EqualTimes
 from fuzzytrack.io.piece import Piece, check_finite, place_of
 from fuzzytrack.io.time_cells import same_time
 from fuzzytrack.plurals import counted
-from fuzzytrack.reprs import constructor_code
+from fuzzytrack.reprs import constructor_code, summary
 
-__all__ = ["Cleaner", "Cleaning", "CleaningCounts", "Duplicates"]
+__all__ = ["Cleaner", "Cleaning", "CleaningCounts", "Duplicates", "JudgedRows"]
 
 #: What is done about plots of a track at equal times.
 Duplicates = Literal["error", "first", "last", "mean"]
@@ -178,6 +178,49 @@ class CleaningCounts:
         return tuple(said)
 
 
+@dataclass(frozen=True, eq=False)
+class JudgedRows:
+    """Rows of a piece, and what is to happen to them.
+
+    Attributes
+    ----------
+    judged : Piece
+        All rows, with the segments of those that are kept.
+    raw : Piece
+        The same as they came, with the times of a clock that never starts again.
+    kept : ndarray of bool, shape (n_rows,)
+        Which rows are neither dropped nor wait.
+    """
+
+    judged: Piece
+    raw: Piece
+    kept: NDArray[np.bool_]
+
+    def __repr__(self) -> str:
+        return summary(self, "judged", kept=int(self.kept.sum()))
+
+    @property
+    def cleaned(self) -> Piece:
+        """Rows that are kept."""
+        return self.judged if self.kept.all() else self.judged.take(self.kept)
+
+    @property
+    def seen(self) -> Piece:
+        """Rows that belong to their tracks now, also if they are dropped; copies do not."""
+        assert self.judged.segments is not None
+        there = self.judged.segments >= 0
+        return self.raw if there.all() else self.raw.take(there)
+
+    @property
+    def waiting(self) -> Piece:
+        """Rows of tracks that have stopped, from the one on that is out of order.
+
+        That one has its time of a clock that never starts again, the others have theirs as it came.
+        """
+        assert self.judged.segments is not None
+        return self.raw.take(self.judged.segments == cleaning_step.WAITS)
+
+
 class Cleaner:
     """Applies the rules to a recording, piece by piece.
 
@@ -194,7 +237,7 @@ class Cleaner:
 
     Notes
     -----
-    Holds about 300 bytes for each track so far.
+    Holds about 350 bytes for each track so far.
     """
 
     def __init__(
@@ -213,11 +256,13 @@ class Cleaner:
         self._rules = _rules(cleaning)
         known = period if cleaning.wrap == "auto" else cleaning.wrap
         self._clock = np.array([float(known or 0), math.nan])
-        self._counts = np.zeros(6, dtype=np.int64)
         self._fills = self._sorted_wraps = 0
         self._period = 0.0
         self._slot: dict[str, int] = {}
-        self._state = np.empty((0, 0))
+        self._state = _new_tracks(0, OWN)
+        # Places of tracks that were forgotten, and what was counted in them.
+        self._free: list[int] = []
+        self.past = np.zeros(cleaning_step.STOPPED - cleaning_step.COPIES)
         self._files: list[str] = []
         self._file = 0
         self._rows = 0
@@ -225,7 +270,8 @@ class Cleaner:
     @property
     def counts(self) -> CleaningCounts:
         """What the rules have changed so far."""
-        copies, stale, delayed, segments, coasted, wraps = self._counts.tolist()
+        totals = self._state[:, cleaning_step.COPIES : cleaning_step.STOPPED].sum(axis=0)
+        copies, stale, delayed, segments, coasted, wraps = map(int, self.past + totals)
         period = float(self._clock[cleaning_step.PERIOD]) or self._period or None
         equal = self._equal
         return CleaningCounts(
@@ -264,6 +310,116 @@ class Cleaner:
         check_finite(piece)
         piece = self._without_fills(piece)
         return self._cleaned(piece if self._equal is None else self._equal.advance(piece))
+
+    def advance_live(self, piece: Piece) -> JudgedRows:
+        """Clean rows as they come, where those of a track may be out of order.
+
+        A track stops at such a row. What is done about that row is up to the caller, who gives the
+        others that wait once more. Equal times are not merged.
+
+        Parameters
+        ----------
+        piece : Piece
+
+        Raises
+        ------
+        DataError
+            If a time or a position is infinite.
+        ValueError
+            If the number of axes changes.
+        """
+        check_finite(piece)
+        piece = self._without_fills(piece)
+        return self._judged(piece)[0]
+
+    def replay(self, piece: Piece) -> JudgedRows:
+        """Clean rows of tracks that were put back, whose clock has been turned already.
+
+        Parameters
+        ----------
+        piece : Piece
+            Rows of these tracks in order of time, as `JudgedRows.seen` gave them.
+        """
+        turns = self._turns(piece.ids.names)
+        clock, recognizes = self._clock.copy(), self._rules[cleaning_step.RECOGNIZE]
+        self._clock[:], self._rules[cleaning_step.RECOGNIZE] = (0.0, math.nan), 0.0
+        places = [self._place(name) for name in piece.ids.names]
+        self._state[places, cleaning_step.TURNS] = 0.0
+        found = self._judged(piece)[0]
+        self._state[places, cleaning_step.TURNS] = turns
+        self._clock[:], self._rules[cleaning_step.RECOGNIZE] = clock, recognizes
+        return found
+
+    # ---------------------------------------------------------------- tracks as numbers
+
+    def __len__(self) -> int:
+        """Number of tracks that are known."""
+        return len(self._slot)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Their identities."""
+        return tuple(self._slot)
+
+    @property
+    def clock(self) -> tuple[float, float, int]:
+        """Period of the clock (s), time of the last row (s), and rows with values beyond use."""
+        period, now = self._clock.tolist()
+        return period, now, self._fills
+
+    @clock.setter
+    def clock(self, value: tuple[float, float, int]) -> None:
+        *clock, self._fills = value
+        self._clock[:] = clock
+
+    def width(self, n_axes: int) -> int:
+        """Numbers of a track."""
+        return OWN + 2 * n_axes
+
+    def numbers(self, ids: Sequence[str], n_axes: int) -> Array:
+        """All that is known of tracks, shape (n_tracks, `width`); of new ones that they are new."""
+        self._make_room(n_axes)
+        places = [self._place(id) for id in ids]
+        self._make_room(n_axes)
+        found: Array = self._state[places]
+        return found
+
+    def put(self, ids: Sequence[str], numbers: Array, *, turned: bool = False) -> None:
+        """Make tracks what they were when `numbers` gave these.
+
+        Parameters
+        ----------
+        ids : sequence of str
+            The tracks; new ones are made.
+        numbers : ndarray, shape (n_tracks, width)
+        turned : bool
+            Whether their clock stays as often turned as it is.
+        """
+        n_axes = (numbers.shape[1] - OWN) // 2
+        turns = self._turns(ids, n_axes) if turned else numbers[:, cleaning_step.TURNS]
+        self.numbers(ids, n_axes)
+        places = [self._slot[id] for id in ids]
+        self._state[places] = numbers
+        self._state[places, cleaning_step.TURNS] = turns
+
+    def forget(self, ids: Sequence[str]) -> None:
+        """Forget tracks, but for what has been counted in them."""
+        for id in ids:
+            place = self._slot.pop(id)
+            track = self._state[place]
+            self.past += track[cleaning_step.COPIES : cleaning_step.STOPPED]
+            self._state[place] = _new_tracks(1, len(track))
+            self._free.append(place)
+
+    def _turns(self, ids: Sequence[str], n_axes: int | None = None) -> Array:
+        axes = (self._state.shape[1] - OWN) // 2 if n_axes is None else n_axes
+        return self.numbers(ids, axes)[:, cleaning_step.TURNS]
+
+    def _place(self, name: str) -> int:
+        place = self._slot.get(name)
+        if place is None:
+            place = self._slot[name] = self._free.pop() if self._free else len(self._slot)
+        return place
 
     def in_order(self, piece: Piece) -> Piece:
         """Put a recording in order of time, track by track, before it is cleaned as one piece.
@@ -305,6 +461,13 @@ class Cleaner:
     def _cleaned(self, piece: Piece) -> Piece:
         if not len(piece):
             return replace(piece, segments=np.zeros(0, dtype=np.int64))
+        found, wrong, now = self._judged(piece)
+        if wrong >= 0:
+            raise self._time_error(piece, wrong, now)
+        return found.cleaned
+
+    def _judged(self, piece: Piece) -> tuple[JudgedRows, int, float]:
+        """Rows with what is to happen to them; the first at which a track stops, and its time."""
         if piece.file not in self._files:
             self._files.append(piece.file)
         self._file = self._files.index(piece.file)
@@ -316,29 +479,34 @@ class Cleaner:
         large = self._rows > _COMPILE_ABOVE and len(piece) > _PLAIN_BELOW
         run = self._compiled if large else self._plain
         wrong = run(slots, time, piece.rows, plots, kept, segments)
-        if wrong >= 0:
-            raise self._time_error(piece, wrong, int(slots[wrong]))
+        # Those that are put back, or told of, go on from here.
+        self._state[slots[segments == cleaning_step.WAITS], cleaning_step.STOPPED] = 0.0
         cleaned = replace(piece, time=time, plots=plots, segments=segments)
-        return cleaned if kept.all() else cleaned.take(kept)
+        found = JudgedRows(cleaned, replace(piece, time=time), kept)
+        return found, wrong, float(time[wrong])
 
     def _slots(self, piece: Piece) -> NDArray[np.int64]:
         """Places of the tracks of the rows; room for the new ones."""
-        n_axes = piece.plots.shape[1]
-        width = OWN + 2 * n_axes
+        n_axes, names, codes = piece.plots.shape[1], piece.ids.names, piece.ids.codes
+        self._make_room(n_axes)
+        present = np.flatnonzero(np.bincount(codes, minlength=len(names)))
+        places = np.zeros(len(names), dtype=np.int64)
+        places[present] = [self._place(names[k]) for k in present.tolist()]
+        self._make_room(n_axes)
+        return places[codes]
+
+    def _make_room(self, n_axes: int) -> None:
+        """Make room for the tracks that there are."""
+        width = self.width(n_axes)
         if not self._slot:
-            self._state = _new_tracks(0, width)
+            self._state, self._free = _new_tracks(0, width), []
         elif self._state.shape[1] != width:
             before = (self._state.shape[1] - OWN) // 2
             raise ValueError(f"plots: {n_axes} axes; the pieces before have {before}")
-        codes, slot = piece.ids.codes, self._slot
-        present = np.flatnonzero(np.bincount(codes, minlength=len(piece.ids.names)))
-        places = np.zeros(len(piece.ids.names), dtype=np.int64)
-        names = piece.ids.names
-        places[present] = [slot.setdefault(names[k], len(slot)) for k in present.tolist()]
-        if len(slot) > len(self._state):
-            more = max(len(slot) - len(self._state), len(self._state))
+        missing = len(self._slot) + len(self._free) - len(self._state)
+        if missing > 0:
+            more = max(missing, len(self._state))
             self._state = np.concatenate([self._state, _new_tracks(more, width)])
-        return places[codes]
 
     # ---------------------------------------------------------------- the rows
 
@@ -356,15 +524,14 @@ class Cleaner:
         present, own = np.unique(slots, return_inverse=True)
         lists = [values.ravel().tolist() for values in (time, plots, kept, segments)]
         tracks, clock = self._state[present].ravel().tolist(), self._clock.tolist()
-        counts = self._counts.tolist()
         wrong = clean_rows(
             own.tolist(), lists[0], rows.tolist(), lists[1], plots.shape[1], self._file,
-            self._rules.tolist(), clock, tracks, counts, lists[2], lists[3],
+            self._rules.tolist(), clock, tracks, lists[2], lists[3],
         )  # fmt: skip
         for values, found in zip((time, plots, kept, segments), lists, strict=True):
             values.ravel()[:] = found
         self._state[present] = np.reshape(tracks, (len(present), -1))
-        self._clock[:], self._counts[:] = clock, counts
+        self._clock[:] = clock
         return wrong
 
     def _compiled(
@@ -378,15 +545,14 @@ class Cleaner:
     ) -> int:
         return _compiled_rows()(
             slots, time, np.ascontiguousarray(rows, dtype=np.int64), plots.ravel(), plots.shape[1],
-            self._file, self._rules, self._clock, self._state.ravel(), self._counts, kept,
-            segments,
+            self._file, self._rules, self._clock, self._state.ravel(), kept, segments,
         )  # fmt: skip
 
     # ---------------------------------------------------------------- messages
 
-    def _time_error(self, piece: Piece, place: int, slot: int) -> DataError:
-        """Error about the time of a row that is not later than that of the row before."""
-        track = self._state[slot]
+    def _time_error(self, piece: Piece, place: int, now: float) -> DataError:
+        """Error about a row whose time, `now`, is not later than that of the row before."""
+        track = self._state[self._slot[piece.ids[place]]]
         id = piece.ids[place]
         whose = f" (id {id!r})" if id else ""
         before = f"row {int(track[cleaning_step.ROW])}"
@@ -394,8 +560,7 @@ class Cleaner:
         if file != piece.file:
             before += f" of {file}"
         time = float(piece.time[place])
-        turned = float(track[cleaning_step.TURNS] * self._clock[cleaning_step.PERIOD])
-        fall = float(track[cleaning_step.TIME]) - (time + turned)
+        fall = float(track[cleaning_step.TIME]) - now
         if fall == 0:
             what = _repeats(piece, place, before, id)
         else:

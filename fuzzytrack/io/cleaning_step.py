@@ -10,19 +10,22 @@ from __future__ import annotations
 import math
 from typing import Any
 
-__all__ = ["OWN", "clean_rows"]
+__all__ = ["COPY", "OWN", "WAITS", "clean_rows"]
 
 # Numbers of a track: the first and then two positions, of its last row and of its last plot.
 STARTED, TIME, TURNS, ROW, FILE = 0, 1, 2, 3, 4
 PLOT, PLOTS, SEGMENT, INTERVALS, SUM = 5, 6, 7, 8, 9
-OWN = 10
+# What has been counted in it, and whether it has stopped at a row that is out of order.
+COPIES, STALES, DELAYED, SEGMENTS, COASTED, WRAPS = range(10, 16)
+STOPPED = 16
+OWN = 17
 
 # Rules.
 STALE, LEAST_STEP, MAX_GAP, MAX_COAST, RECOGNIZE, GAP_FACTOR, GAP_INTERVALS = range(7)
 # The clock: its period, 0 where unknown, and the time of the row before in the file.
 PERIOD, NOW = 0, 1
-# Counts.
-COPIES, STALES, DELAYED, SEGMENTS, COASTED, WRAPS = range(6)
+#: What stands for the segment of a row that was dropped as a copy, and of one that waits.
+COPY, WAITS = -1, -2
 
 # Periods of clocks (s): a day, a week, and counters of 32 bits in milliseconds and microseconds.
 PERIODS = (86_400.0, 604_800.0, 2**32 / 1e3, 2**32 / 1e6)
@@ -42,11 +45,13 @@ def clean_rows(
     rules: Any,
     clock: Any,
     state: Any,
-    counts: Any,
     kept: Any,
     segments: Any,
 ) -> int:
     """Judge rows, in the order of the file.
+
+    A track stops at the first row whose time is not later than that of the row before: this row and
+    all later ones of the track wait, and its numbers are those before it.
 
     Parameters
     ----------
@@ -60,30 +65,37 @@ def clean_rows(
         Positions; overwritten with NaN where a plot is taken as missed.
     n_axes, file : int
         Number of axes, and number of the file.
-    rules, clock, state, counts : sequence of float
-        The rules; the clock, the tracks and the counts so far, which are brought up to date.
+    rules, clock, state : sequence of float
+        The rules; the clock and the tracks so far, which are brought up to date.
     kept : sequence of bool, length n_rows
-        Set to false where a row is dropped.
+        Set to false where a row is dropped or waits.
     segments : sequence of int, length n_rows
-        Overwritten with the part of its track that a row belongs to.
+        Overwritten with the part of its track that a row belongs to, or with `COPY` or `WAITS`.
 
     Returns
     -------
     int
-        Place of the first row whose time is not later than that of the row before in its track;
-        -1 if there is none.
+        Place of the first row at which a track has stopped; -1 if there is none.
     """
-    width = OWN + 2 * n_axes
+    width, wrong = OWN + 2 * n_axes, -1
     for i in range(len(slots)):
         track, here = slots[i] * width, i * n_axes
         last, held = track + OWN, track + OWN + n_axes
-        now = _unwrapped(time[i], track, rules, clock, state, counts)
+        if state[track + STOPPED] != 0.0:
+            kept[i], segments[i] = False, WAITS
+            continue
+        now = _unwrapped(time[i], track, rules, clock, state)
         time[i] = now
         if state[track + STARTED] != 0.0 and now <= state[track + TIME]:
-            if now < state[track + TIME] or not _same(plots, here, state, last, n_axes):
-                return i
             kept[i] = False
-            counts[COPIES] += 1
+            if now == state[track + TIME] and _same(plots, here, state, last, n_axes):
+                state[track + COPIES] += 1.0
+                segments[i] = COPY
+                continue
+            state[track + STOPPED] = 1.0
+            segments[i] = WAITS
+            if wrong < 0:
+                wrong = i
             continue
         state[track + STARTED], state[track + TIME] = 1.0, now
         state[track + ROW], state[track + FILE] = float(rows[i]), float(file)
@@ -97,7 +109,7 @@ def clean_rows(
         if plot and since <= rules[STALE] and _same(plots, here, state, held, n_axes):
             plot = False
             _miss(plots, here, n_axes)
-            counts[STALES] += 1
+            state[track + STALES] += 1.0
         if state[track + PLOTS] > 0.0 and since > _longest(track, rules, state):
             state[track + PLOTS] = 0.0
             state[track + SEGMENT] += 1.0
@@ -105,18 +117,16 @@ def clean_rows(
         if not plot:
             if since > rules[MAX_COAST]:
                 kept[i] = False
-                counts[COASTED] += 1
+                state[track + COASTED] += 1.0
         elif state[track + PLOTS] == 1.0 and since < rules[LEAST_STEP]:
             _miss(plots, here, n_axes)
-            counts[DELAYED] += 1
+            state[track + DELAYED] += 1.0
         else:
-            _accept(plots, here, n_axes, now, track, state, counts)
-    return -1
+            _accept(plots, here, n_axes, now, track, state)
+    return wrong
 
 
-def _accept(
-    plots: Any, here: int, n_axes: int, now: float, track: int, state: Any, counts: Any
-) -> None:
+def _accept(plots: Any, here: int, n_axes: int, now: float, track: int, state: Any) -> None:
     """Remember a plot."""
     if state[track + PLOTS] > 0.0:
         state[track + INTERVALS] += 1.0
@@ -124,7 +134,7 @@ def _accept(
         state[track + PLOTS] = 2.0
     else:
         if state[track + SEGMENT] > 0.0:
-            counts[SEGMENTS] += 1
+            state[track + SEGMENTS] += 1.0
         state[track + PLOTS] = 1.0
     state[track + PLOT] = now
     for axis in range(n_axes):
@@ -143,7 +153,7 @@ def _longest(track: int, rules: Any, state: Any) -> float:
     return longest
 
 
-def _unwrapped(time: float, track: int, rules: Any, clock: Any, state: Any, counts: Any) -> float:
+def _unwrapped(time: float, track: int, rules: Any, clock: Any, state: Any) -> float:
     """Time of a row, with the periods after which the clock has started again."""
     period, turns, before = clock[PERIOD], state[track + TURNS], clock[NOW]
     if state[track + STARTED] == 0.0:
@@ -163,7 +173,7 @@ def _unwrapped(time: float, track: int, rules: Any, clock: Any, state: Any, coun
                 # Out of order, unless other tracks show that the clock has started again.
                 after = max(turns, _nearest(time, period, before))
             if time + after * period > last and after > turns:
-                counts[WRAPS] += 1
+                state[track + WRAPS] += 1.0
                 turns = after
         elif turns > 0.0 and period - later <= min(_PLAUSIBLE * mean, _DISORDER * period):
             # A row from before midnight among those from after it.

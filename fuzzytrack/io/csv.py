@@ -6,7 +6,7 @@ import codecs
 import csv
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import BufferedReader, StringIO
 from pathlib import Path
@@ -26,7 +26,7 @@ from fuzzytrack.io.track_text import iso_times
 from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
 
-__all__ = ["CsvSource", "check", "open_source", "open_target"]
+__all__ = ["CsvSource", "check", "csv_rows", "open_source", "open_target"]
 
 
 def check(file: str) -> None:
@@ -180,11 +180,27 @@ def open_target(
             columns = [values[name] for name in types]
             length = len(columns[0])
             for start in range(0, length, CHUNK):
-                part = [_cells(column[start : start + CHUNK], quoted) for column in columns]
-                writer.writerows(zip(*part, strict=True))
+                part = [column[start : start + CHUNK] for column in columns]
+                writer.writerows(csv_rows(part, quote_formulas))
                 progress(min((start + CHUNK) / length, 1.0))
 
         yield write
+
+
+def csv_rows(
+    columns: Sequence[Sequence[str] | NDArray[Any]], quote_formulas: bool = False
+) -> Iterable[tuple[Any, ...]]:
+    """Rows of columns as `csv.writer` takes them; NaN is an empty cell.
+
+    Parameters
+    ----------
+    columns : sequence of (sequence of str or ndarray)
+        All of one length.
+    quote_formulas : bool
+        As for `fuzzytrack.io.table_writer`.
+    """
+    quoted = _without_formulas if quote_formulas else list
+    return zip(*(_cells(column, quoted) for column in columns), strict=True)
 
 
 def _without_formulas(words: Sequence[str]) -> list[str]:

@@ -17,7 +17,7 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io.angles import unwrapped
 from fuzzytrack.io.cleaning import Cleaner
 from fuzzytrack.io.columns import Columns, choose_columns, looks_like_identity
-from fuzzytrack.io.decoder import Noise, PlotDecoder, joined_cells
+from fuzzytrack.io.decoder import Noise, PlotDecoder, is_latitude, joined_cells
 from fuzzytrack.io.description import PlotDescription, TimeUnit
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import open_table
@@ -33,7 +33,7 @@ from fuzzytrack.tasks import Progress
 if TYPE_CHECKING:
     from fuzzytrack.io.geodetic import LocalFrame
 
-__all__ = ["ROWS", "Input", "PlotFiles", "Survey", "opened"]
+__all__ = ["ROWS", "Input", "PlotFiles", "Survey", "frame_of", "opened"]
 
 #: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
 ROWS = 250_000
@@ -237,10 +237,8 @@ class PlotFiles:
 
             with opened(each, self.reading) as source:
                 for table in source.tables(self.columns.kinds, rows, watch):
-                    named = _named(table, self.columns)
-                    found.unnamed += len(table.rows) - len(named.rows)
-                    if len(named.rows):
-                        piece = self.decoder.decode(named, found.impossible)
+                    piece = self.piece_of(table, found)
+                    if len(piece):
                         if self.columns.position == "geodetic":
                             farthest = max(farthest, _farthest(piece))
                         yield piece
@@ -249,6 +247,25 @@ class PlotFiles:
         if self.columns.position == "geodetic" and self.decoder.frame is not None:
             told = self.decoder.frame.remark(farthest, len(self.columns.axes))
             found.note([told] if told else [])
+
+    def piece_of(self, table: Table, findings: Findings) -> Piece:
+        """Plots of the rows of a table that have an identity.
+
+        Parameters
+        ----------
+        table : Table
+            The columns `Columns.kinds`.
+        findings : Findings
+            Gets the counts of rows without an identity and of positions that cannot be.
+
+        Raises
+        ------
+        DataError
+            If a time or a standard deviation is none; names row, column and value.
+        """
+        named = _named(table, self.columns)
+        findings.unnamed += len(table.rows) - len(named.rows)
+        return self.decoder.decode(named, findings.impossible)
 
     def surveyed(self) -> tuple[PlotFiles, Survey]:
         """Look at the first rows for what is not given: noise, and the usual time between plots.
@@ -338,16 +355,25 @@ def _decoder(
             f"{', '.join(get_args(TimeUnit))}; `time_unit` says which it is"
         )
     clock = Clock.of(cells, unit=description.time_unit, name=columns.time, unit_of_name=unit)
-    frame = None
+    frame = frame_of(columns, description, table)
+    return PlotDecoder(columns, description, clock, frame, _given_noise(columns, description))
+
+
+def frame_of(columns: Columns, description: PlotDescription, table: Table) -> LocalFrame | None:
+    """Frame of the positions: about the site, or about the first place on earth in a table.
+
+    Raises
+    ------
+    DataError
+        If there must be a place and there is none.
+    """
     if description.site is not None:
         from fuzzytrack.io.geodetic import LocalFrame
 
-        frame = LocalFrame(*description.site)
-    decoder = PlotDecoder(columns, description, clock, frame, _given_noise(columns, description))
-    if frame is None and (columns.position == "geodetic" or decoder.own_ship_is_geodetic):
-        names = columns.own_ship if decoder.own_ship_is_geodetic else columns.read
-        decoder = replace(decoder, frame=_frame_at_first(table, names))
-    return decoder
+        return LocalFrame(*description.site)
+    if columns.own_ship and is_latitude(columns.own_ship[0]):
+        return _frame_at_first(table, columns.own_ship)
+    return _frame_at_first(table, columns.read) if columns.position == "geodetic" else None
 
 
 def _frame_at_first(table: Table, names: Sequence[str]) -> LocalFrame:

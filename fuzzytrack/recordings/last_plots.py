@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -12,7 +13,10 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.io.piece import Piece
 
-__all__ = ["LastPlots", "RowsSince"]
+__all__ = ["KNOWN", "LastPlots", "RowsSince"]
+
+#: How many numbers are known of an identity.
+KNOWN = 3
 
 # Segment of a track, time of its last plot (s), and its plots so far, counted up to two.
 _Last: TypeAlias = tuple[int, float, int]
@@ -43,6 +47,20 @@ class LastPlots:
 
     def __init__(self) -> None:
         self._last: dict[str, _Last] = {}
+
+    def numbers(self, ids: Sequence[str]) -> Array:
+        """What is known of some identities: segment, time and plots, shape (n_ids, `KNOWN`)."""
+        return np.array([self._last.get(id, _NOTHING) for id in ids], dtype=np.float64)
+
+    def put(self, ids: Sequence[str], numbers: Array) -> None:
+        """Make of some identities known what `numbers` gave."""
+        for id, (segment, time, count) in zip(ids, numbers.tolist(), strict=True):
+            self._last[id] = int(segment), time, int(count)
+
+    def forget(self, ids: Sequence[str]) -> None:
+        """Forget some identities."""
+        for id in ids:
+            self._last.pop(id, None)
 
     def advance(self, piece: Piece, used: Mask) -> RowsSince:
         """Take one more piece in.

@@ -26,6 +26,22 @@ class Restarts:
     def __init__(self) -> None:
         self._so_far: Counter[str] = Counter()
 
+    def of(self, ids: Sequence[str]) -> list[int]:
+        """Starts of some identities so far."""
+        return [self._so_far[id] for id in ids]
+
+    def total(self) -> int:
+        """Starts of all identities so far."""
+        return self._so_far.total()
+
+    def put(self, ids: Sequence[str], starts: Sequence[int]) -> None:
+        """Set the starts of some identities; those of none take no memory."""
+        for id, count in zip(ids, starts, strict=True):
+            if count:
+                self._so_far[id] = count
+            else:
+                self._so_far.pop(id, None)
+
     def advance(self, piece: Piece, begins: Mask) -> Piece:
         """Number the segments of a piece anew.
 

@@ -180,10 +180,82 @@ class OpenTracks:
                 outputs[name] = self.judge.circle.wrapped(outputs[name])
         return tracked
 
+    # ---------------------------------------------------------------- tracks as numbers
+
+    def width(self, n_axes: int) -> int:
+        """How many numbers `numbers` gives of a track of so many axes."""
+        # An empty store is false.
+        store = TrackStore(self.tracker, n_axes) if self._store is None else self._store
+        memory = 0 if self.judge is None else JudgeMemory.fresh(1, n_axes).numbers.size
+        return 1 + store.width + memory
+
+    def numbers(self, names: Sequence[str], n_axes: int) -> Array:
+        """All that is known of tracks, as plain numbers.
+
+        Parameters
+        ----------
+        names : sequence of str
+            The tracks, each once: identities with segments, as `Piece.tracks` names them.
+        n_axes : int
+            Axes of the plots.
+
+        Returns
+        -------
+        ndarray, shape (n_tracks, width)
+            NaN of tracks that there are not.
+        """
+        found = np.full((len(names), self.width(n_axes)), math.nan)
+        there = np.array([name in self._slot for name in names], dtype=np.bool_)
+        if there.any():
+            assert self._store is not None
+            slots = np.array([self._slot[name] for name in names if name in self._slot])
+            known = [self._first[slots], self._store.numbers(slots)]
+            if self.judge is not None:
+                known.append(self._memory[slots].reshape(len(slots), -1))
+            found[there] = np.column_stack(known)
+        return found
+
+    def put(self, names: Sequence[str], numbers: Array, n_axes: int) -> None:
+        """Make tracks what they were when `numbers` gave these; they end, or begin, if need be.
+
+        Parameters
+        ----------
+        names : sequence of str
+            The tracks, each once.
+        numbers : ndarray, shape (n_tracks, width)
+        n_axes : int
+            Axes of the plots.
+        """
+        there = ~np.isnan(numbers[:, 0])
+        self.end([name for name, now in zip(names, there, strict=True) if not now])
+        if not there.any():
+            return
+        store = self._store_of(n_axes, 0)
+        numbers = numbers[there]
+        names = [name for name, now in zip(names, there, strict=True) if now]
+        end = 1 + store.width
+        state = store.restored(numbers[:, 1:end])
+        self.end([name for name in names if name in self._slot])
+        slots = store.add(state)
+        self._slot.update(zip(names, slots.tolist(), strict=True))
+        self._make_room(store)
+        self._first[slots] = numbers[:, 0]
+        if self.judge is not None:
+            self._memory[slots] = numbers[:, end:].reshape(len(slots), n_axes, -1)
+
+    def end(self, names: Sequence[str]) -> None:
+        """End tracks; those that there are not are passed over."""
+        slots = [self._slot.pop(name) for name in names if name in self._slot]
+        if slots:
+            assert self._store is not None
+            self._store.drop(slots)
+
     def _store_for(self, piece: Piece) -> TrackStore:
-        n_axes = piece.plots.shape[1]
+        return self._store_of(piece.plots.shape[1], piece.plots.size)
+
+    def _store_of(self, n_axes: int, coordinates: int) -> TrackStore:
         if self._store is None:
-            announce(self.tracker, n_axes, piece.plots.size)
+            announce(self.tracker, n_axes, coordinates)
             self._store = TrackStore(self.tracker, n_axes)
         if self._store.n_axes != n_axes:
             raise ValueError(f"plots: {n_axes} axes; the pieces before have {self._store.n_axes}")

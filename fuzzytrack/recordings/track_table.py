@@ -161,11 +161,16 @@ class TrackRows:
     typed : bool
         Whether times that are numbers become numbers where they were read as text: for files and
         data frames whose columns have types.
+
+    Attributes
+    ----------
+    last : LastPlots
+        The last plots of the tracks so far.
     """
 
     def __init__(self, table: TrackTable, *, typed: bool = False) -> None:
         self.table, self._typed = table, typed
-        self._last = LastPlots()
+        self.last = LastPlots()
         self._time_type: type | None = None
 
     def values(self, piece: Piece, outputs: Mapping[str, Array]) -> dict[str, Any]:
@@ -179,7 +184,7 @@ class TrackRows:
         """
         table, period = self.table, self.table.period
         used = _used(piece.plots, outputs, period)
-        since = self._last.advance(piece, used)
+        since = self.last.advance(piece, used)
         values: dict[str, Any] = {table.id: piece.ids} if table.id else {}
         values[table.time] = self.times(piece)
         for k, axis in enumerate(table.axes):

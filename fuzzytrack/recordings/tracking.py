@@ -11,7 +11,7 @@ from fuzzytrack.io.data_frame import FrameSource
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.findings import Findings
-from fuzzytrack.io.plot_files import Input, PlotFiles
+from fuzzytrack.io.plot_files import Input, PlotFiles, Survey
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Recording, Track, read_recording, recording_files
 from fuzzytrack.recordings.judge import Judge
@@ -39,6 +39,7 @@ __all__ = [
     "PreparedPlots",
     "TrackedRecording",
     "prepare",
+    "prepared",
     "track",
     "track_recording",
 ]
@@ -108,8 +109,29 @@ def prepare(
         As `track`.
     """
     # First, since a tracker that cannot be made needs no files.
-    made = None if tracker is None else as_tracker(tracker)
-    files, survey = PlotFiles.of(inputs_of(plots), reading).surveyed()
+    if tracker is not None:
+        as_tracker(tracker)
+    return prepared(*PlotFiles.of(inputs_of(plots), reading).surveyed(), tracker, gate)
+
+
+def prepared(
+    files: PlotFiles, survey: Survey, tracker: Tracker | str | None, gate: GateWidth = "auto"
+) -> PreparedPlots:
+    """Choose tracker, table and judge for plots that have been looked at.
+
+    Parameters
+    ----------
+    files : PlotFiles
+    survey : Survey
+        What is known of them beside what the files say.
+    tracker, gate
+        As for `track`.
+
+    Raises
+    ------
+    DataError, ValueError
+        As `track`.
+    """
     findings = Findings()
     chosen = DEFAULT_TRACKER if tracker is None else tracker
     if survey.missing and tracker is None:
@@ -117,8 +139,7 @@ def prepare(
         findings.note([f"{survey.missing}. Tracked with {chosen}: {DEFAULT_TRACKER} needs it"])
     elif survey.missing:
         findings.note([survey.missing])
-    made = as_tracker(chosen) if made is None else made
-    spec, made = suited(chosen, made, axes_differ=noise_differs(files.decoder))
+    spec, made = suited(chosen, as_tracker(chosen), axes_differ=noise_differs(files.decoder))
     table, judge = TrackTable.of(files.decoder, made), judge_of(files.decoder, gate, survey.noise)
     return PreparedPlots(files, made, spec, table, judge, findings)
 

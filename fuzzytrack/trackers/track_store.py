@@ -184,6 +184,53 @@ class TrackStore:
         """
         return self._state(self._checked(slots))
 
+    @property
+    def width(self) -> int:
+        """How many numbers `numbers` gives of a track."""
+        return 1 + self._rows.kept * (self._cell.itemsize // 8)
+
+    def numbers(self, slots: ArrayLike) -> Array:
+        """Time and state of some tracks as plain numbers, with which `restored` makes the state.
+
+        Parameters
+        ----------
+        slots : array_like of int, shape (n,)
+            The tracks, each once.
+
+        Returns
+        -------
+        ndarray, shape (n, width)
+
+        Raises
+        ------
+        ValueError
+            As for `drop`.
+        """
+        whom = self._checked(slots)
+        # Lane by lane of a number after the other; a cell has those of a track.
+        numbers = self._numbers[whom].view(np.float64).reshape(len(whom), self.width - 1)
+        return np.column_stack([self._time[whom], numbers])
+
+    def restored(self, numbers: Array) -> TrackState:
+        """State of the tracks of which `numbers` are, also in another process.
+
+        Parameters
+        ----------
+        numbers : ndarray, shape (n, width)
+            From `numbers` of a store of the same tracker.
+
+        Raises
+        ------
+        ValueError
+            If there are not as many numbers as the tracker has.
+        """
+        if numbers.ndim != 2 or numbers.shape[1] != self.width:
+            raise ValueError(f"numbers: shape {numbers.shape}; expected (n, {self.width})")
+        cells = np.ascontiguousarray(numbers[:, 1:], dtype=np.float64).view(self._cell)
+        lanes = np.ascontiguousarray(cells.T).view(np.float64)
+        time = np.array(numbers[:, 0])
+        return TrackState(time, (len(time), self.n_axes), lanes, self._rows, self._origin)
+
     def scatter(self, slots: ArrayLike, state: TrackState) -> None:
         """Replace the state of some tracks.
 

@@ -1,0 +1,524 @@
+"""Plots tracked as they come, late ones put in their place.
+
+The answers are those of the recording: what `Cleaner`, `OpenTracks` and `TrackRows` make of a
+file's pieces, they make of the plots that have come. What is known of a track stands in one row of
+numbers, which can be kept, put back, and saved.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from hashlib import blake2b
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.cleaning import Cleaning
+from fuzzytrack.io.cleaning_step import SEGMENT, TIME
+from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.table import Words
+from fuzzytrack.recordings.last_plots import KNOWN
+from fuzzytrack.recordings.live_faults import LiveFaults
+from fuzzytrack.recordings.recent_rows import RecentRows, Row
+from fuzzytrack.recordings.restarts import Restarts
+from fuzzytrack.recordings.streaming import OpenTracks
+from fuzzytrack.recordings.track_table import TrackRows
+from fuzzytrack.recordings.tracking import PreparedPlots
+from fuzzytrack.reprs import summary
+from fuzzytrack.trackers.catalog import as_lane_tracker
+from fuzzytrack.trackers.compilation import announce
+
+__all__ = ["REVISION", "Answers", "LiveTracks", "check_rules"]
+
+#: Column of how often an answer has been written again.
+REVISION = "revision"
+# Rows of the feed after which tracks that were silent for long are looked for; a fixed number, so
+# that answers do not depend on how the rows come.
+_SWEEP = 4096
+# Coordinates of a feed that never ends.
+_MANY = 1 << 62
+
+
+@dataclass(frozen=True, eq=False)
+class Answers:
+    """What is answered to some plots.
+
+    Attributes
+    ----------
+    columns : dict of (sequence of str or ndarray)
+        Values by the names of `TrackTable`, and `REVISION`, all of one length.
+    lines : ndarray of int
+        Line of the feed that each answers. Answers that a late plot has changed follow its own.
+    """
+
+    columns: dict[str, Any]
+    lines: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return summary(self, rows=len(self.lines))
+
+    def __len__(self) -> int:
+        """Number of answers."""
+        return len(self.lines)
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Answers to rows of one kind, and where they belong among the others."""
+
+    columns: dict[str, Any]
+    lines: NDArray[np.int64]
+    order: NDArray[np.int64]
+
+
+class LiveTracks:
+    """Tracks of a feed of plots.
+
+    Parameters
+    ----------
+    prepared : PreparedPlots
+        How plots are cleaned, judged and tracked.
+    lateness : float
+        A plot that is older than the newest one of its track by at most so much (s) is put in its
+        place, and the answers after it are given again where they change. Older ones, and with 0
+        all that are out of order, are counted and not used.
+    forget : float, optional
+        A track without a row for longer than this (s) is forgotten: nothing of it is kept, and a
+        later plot of its identity begins a new track, in segment 0. It is looked for every 4096
+        lines. Unless given, all tracks are kept.
+    faults : LiveFaults, optional
+        Gets what is wrong with plots.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Columns of the answers.
+    counts : dict of str to int
+        Number of answers, of revisions among them, of late plots that were put in their place, of
+        copies of earlier plots, and of tracks that were forgotten.
+    recent : dict of str to RecentRows
+        With `lateness`, the last rows of each identity.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or an option needs rows to come.
+    DataError
+        If two columns of the answers would have one name.
+
+    Notes
+    -----
+    Holds about 1.5 kB for each track, and with `lateness` 0.3 kB for each plot that is not older,
+    for eight more, and the numbers of a track once in eight plots.
+
+    Examples
+    --------
+    >>> from fuzzytrack.io.piece import Piece
+    >>> from fuzzytrack.io.reading import Reading
+    >>> from fuzzytrack.recordings.tracking import prepare
+    >>> first = ([0.0, 1.0], [[0.0], [10.0]])        # tells how many axes there are
+    >>> prepared = prepare(first, "fixed:alpha=0.5:beta=0.2", Reading())
+    """
+
+    def __init__(
+        self,
+        prepared: PreparedPlots,
+        *,
+        lateness: float = 0.0,
+        forget: float | None = None,
+        faults: LiveFaults | None = None,
+    ) -> None:
+        check_rules(prepared.files.reading.cleaning, lateness, forget)
+        self.prepared, self.lateness, self._forget = prepared, lateness, forget
+        self.faults = LiveFaults() if faults is None else faults
+        table = prepared.table
+        self.names = (*table.names, REVISION)
+        if REVISION in table.names:
+            raise DataError(f"two columns of the output would be {REVISION!r}")
+        self._axes = len(table.axes)
+        self._cleaner = prepared.files.cleaner()
+        sigma, tracker = prepared.files.decoder.sigma, as_lane_tracker(prepared.tracker)
+        self._tracks = OpenTracks(tracker, sigma, table.outputs, prepared.judge)
+        self._restarts, self._rows = Restarts(), TrackRows(table)
+        self._rejected: Counter[str] = Counter()
+        self.recent: dict[str, RecentRows] = {}
+        self._swept = _SWEEP
+        self.counts = dict.fromkeys(("answers", "revisions", "late", "copies", "forgotten"), 0)
+        self._gone = np.zeros(2, dtype=np.int64)
+
+    def __len__(self) -> int:
+        """Number of tracks that are known."""
+        return len(self._cleaner)
+
+    def push(self, piece: Piece) -> Answers:
+        """Take plots, and give the answers to them.
+
+        Parameters
+        ----------
+        piece : Piece
+            Plots in the order in which they came, whatever their times; `Piece.rows` are lines of
+            the feed, and increase from piece to piece. Any cut into pieces gives the same answers.
+
+        Raises
+        ------
+        DataError
+            If a number is infinite, or a track cannot be followed with floating-point numbers.
+        """
+        parts: list[_Part] = []
+        for some in self._between_sweeps(piece):
+            while len(some):
+                some = self._take(some, parts)
+        answers = _joined(parts, self.names)
+        self.counts["answers"] += len(answers)
+        return answers
+
+    def warm_up(self) -> None:
+        """Compile what a feed needs, so that no plot waits for it.
+
+        Takes a second, and where nothing is kept on disk from an earlier run much longer. Without
+        it a plot is tracked in plain Python, until there were so many that compiled code is worth
+        its making.
+        """
+        announce(self.prepared.tracker, self._axes, _MANY)
+        other = LiveTracks(self.prepared, lateness=max(self.lateness, 5.0))
+        steps = np.arange(6.0)
+        late = np.repeat([0.0, 1.0, 3.0, 4.0, 2.0, 5.0], 2)
+        plots = np.repeat(steps[:, None], self._axes, axis=1)
+        plots[3] = math.nan
+        piece = Piece(
+            Words(("a", "b"), np.tile([0, 1], 6)),
+            late,
+            np.repeat(plots, 2, axis=0),
+            np.arange(1, 13),
+            sigma=np.ones((12, self._axes)),
+        )
+        for cut in piece.take(np.arange(4)), piece.take(np.arange(4, 12)):
+            other.push(cut)
+
+    def findings(self) -> Findings:
+        """What was put right so far."""
+        rejected, restarts = self._gone.tolist()
+        counts = self._cleaner.counts
+        return Findings(
+            cleaning=replace(counts, copies=counts.copies + self.counts["copies"]),
+            rejected=rejected + self._rejected.total(),
+            restarts=restarts + self._restarts.total(),
+        )
+
+    # ---------------------------------------------------------------- rows
+
+    def _between_sweeps(self, piece: Piece) -> Iterable[Piece]:
+        """Parts of a piece, between which silent tracks are forgotten."""
+        if self._forget is None:
+            yield piece
+            return
+        while len(piece):
+            before = piece.rows < self._swept
+            if before.any():
+                yield piece.take(before)
+            if before.all():
+                return
+            self._sweep(self._forget)
+            piece = piece.take(~before)
+            self._swept = (int(piece.rows[0]) // _SWEEP + 1) * _SWEEP
+
+    def _take(self, piece: Piece, parts: list[_Part]) -> Piece:
+        """Take the rows of each track up to one that is out of order; those that still wait."""
+        before = self._due(piece) if self.lateness else {}
+        judged = self._cleaner.advance_live(piece)
+        cleaned = judged.cleaned
+        if len(cleaned):
+            columns = self._tracked(cleaned)
+            if self.lateness:
+                self._remember(judged.seen, _digests(columns, self.names), before)
+            columns[REVISION] = np.zeros(len(cleaned), dtype=np.int64)
+            parts.append(_Part(columns, cleaned.rows, np.zeros(len(cleaned), dtype=np.int64)))
+        waiting = judged.waiting
+        if not len(waiting):
+            return waiting
+        late = np.zeros(len(waiting), dtype=np.bool_)
+        late[np.unique(waiting.ids.codes, return_index=True)[1]] = True
+        self._place(waiting.take(late), parts)
+        return waiting.take(~late)
+
+    def _tracked(self, cleaned: Piece) -> dict[str, Any]:
+        """Columns of the answers to rows that are in order."""
+        tracked = self._tracks.advance(cleaned)
+        rows = tracked.piece
+        if tracked.begins is not None and tracked.rejected is not None:
+            rows = self._restarts.advance(rows, tracked.begins)
+            if tracked.rejected.any():
+                self._rejected.update(
+                    rows.ids[k] for k in np.flatnonzero(tracked.rejected).tolist()
+                )
+        segments = cleaned.segments
+        if segments is not None and segments.any():
+            # Nothing comes back to a segment that has ended, unless its track is put back.
+            later = {(cleaned.ids[k], int(segments[k])) for k in np.flatnonzero(segments).tolist()}
+            self._tracks.end([_name(id, segment - 1) for id, segment in later])
+        return self._rows.values(rows, tracked.outputs)
+
+    # ---------------------------------------------------------------- late rows
+
+    def _due(self, piece: Piece) -> dict[str, bytes]:
+        """Numbers of the tracks of some rows, where they have to be kept."""
+        names, codes = piece.ids.names, np.unique(piece.ids.codes)
+        ids = [names[code] for code in codes.tolist()]
+        recent = self.recent
+        due = [id for id in ids if id not in recent or recent[id].is_due]
+        if not due:
+            return {}
+        numbers = self.numbers(due)
+        return {id: row.tobytes() for id, row in zip(due, numbers, strict=True)}
+
+    def _remember(self, seen: Piece, answers: list[bytes], before: dict[str, bytes]) -> None:
+        plots, times = seen.plots.tolist(), seen.time.tolist()
+        sigmas = [None] * len(times) if seen.sigma is None else map(tuple, seen.sigma.tolist())
+        cells = [None] * len(times) if seen.time_cells is None else seen.time_cells
+        parts = zip(times, plots, sigmas, cells, seen.rows.tolist(), answers, strict=True)
+        names = seen.ids.names
+        for code, (time, plot, sigma, cell, line, answer) in zip(
+            seen.ids.codes.tolist(), parts, strict=True
+        ):
+            id = names[code]
+            recent = self.recent.get(id)
+            if recent is None:
+                recent = self.recent[id] = RecentRows()
+            row = Row(time, tuple(plot), sigma, cell, line, answer, 0, before.pop(id, None))
+            recent.add(row)
+            recent.prune(time - self.lateness)
+
+    def _place(self, rows: Piece, parts: list[_Part]) -> None:
+        """Put late rows in their place, at most one of each track, and run the tracks again."""
+        again = {}
+        newest = self._cleaner.numbers(_ids(rows), self._axes)[:, TIME].tolist()
+        for k, last in enumerate(newest):
+            id, time = rows.ids[k], float(rows.time[k])
+            recent = self.recent.get(id, RecentRows())
+            same = recent.at(time)
+            if same is not None and _equal(same.plot, rows.plots[k].tolist()):
+                self.counts["copies"] += 1
+            elif same is not None or time == last:
+                self._fault("repeated", rows, k, "its track has a plot at this time already")
+            elif not (self.lateness and time >= last - self.lateness):
+                self._fault("too_late", rows, k, f"{last - time:.6g} s older than its track")
+            else:
+                again[id] = recent.insert(_row(rows, k))
+        if again:
+            self.counts["late"] += len(again)
+            parts.append(self._again(again))
+
+    def _again(self, again: dict[str, tuple[int, int]]) -> _Part:
+        """Run tracks again from a row on, for a late one; answers to that, and those changed."""
+        ids = list(again)
+        befores = [self.recent[id].rows[first].before or b"" for id, (first, _) in again.items()]
+        self.put(ids, np.frombuffer(b"".join(befores)).reshape(len(ids), -1), turned=True)
+        rows = [self.recent[id].rows[first:] for id, (first, _) in again.items()]
+        flat = [row for some in rows for row in some]
+        counts = [len(some) for some in rows]
+        piece = _piece(ids, counts, flat, self.prepared.files.names[0])
+        columns = self._tracked(self._cleaner.replay(piece).cleaned)
+        answers = _digests(columns, self.names)
+        chosen, lines, order = [], [], []
+        start = 0
+        for (first, place), count in zip(again.values(), counts, strict=True):
+            late = start + place - first
+            for k in range(late, start + count):
+                row = flat[k]
+                if row.answer != answers[k]:
+                    row.revision += bool(row.answer)
+                    row.answer = answers[k]
+                    chosen.append(k)
+                    lines.append(flat[late].line)
+                    order.append(k - late)
+            start += count
+        self.counts["revisions"] += sum(flat[k].revision > 0 for k in chosen)
+        places = np.array(chosen, dtype=np.intp)
+        taken = {name: _taken(columns[name], places) for name in self.names if name != REVISION}
+        taken[REVISION] = np.array([flat[k].revision for k in chosen], dtype=np.int64)
+        return _Part(taken, np.array(lines, dtype=np.int64), np.array(order, dtype=np.int64))
+
+    def _fault(self, kind: str, rows: Piece, k: int, what: str) -> None:
+        id, cells = rows.ids[k], rows.time_cells
+        time = rows.time[k] if cells is None else cells[k]
+        whose = f" (id {id!r})" if id else ""
+        self.faults.add(kind, f"line {rows.rows[k]}: time {time}{whose}: {what}; not used")
+
+    # ---------------------------------------------------------------- tracks as numbers
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Identities of the tracks that are known."""
+        return self._cleaner.ids
+
+    def common(self) -> dict[str, NDArray[Any]]:
+        """What is known beside the tracks, as arrays."""
+        return {
+            "clock": np.array(self._cleaner.clock),
+            "past": self._cleaner.past.copy(),
+            "gone": np.array([*self._gone, self._swept]),
+        }
+
+    def set_common(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Make known what `common` gave."""
+        period, now, fills = arrays["clock"].tolist()
+        self._cleaner.clock = period, now, int(fills)
+        self._cleaner.past[:] = arrays["past"]
+        *self._gone[:], self._swept = arrays["gone"].tolist()
+
+    def numbers(self, ids: Sequence[str]) -> Array:
+        """All that is known of tracks, shape (n_tracks, n_numbers); new ones are made."""
+        cleaning = self._cleaner.numbers(ids, self._axes)
+        names = [_name(*each) for each in zip(ids, cleaning[:, SEGMENT].tolist(), strict=True)]
+        judged = [self._restarts.of(ids), [self._rejected[id] for id in ids]]
+        return np.column_stack(
+            [
+                cleaning,
+                np.transpose(judged),
+                self._rows.last.numbers(ids),
+                self._tracks.numbers(names, self._axes),
+            ]
+        )
+
+    def put(self, ids: Sequence[str], numbers: Array, *, turned: bool = False) -> None:
+        """Make tracks what they were when `numbers` gave these.
+
+        Parameters
+        ----------
+        ids : sequence of str
+        numbers : ndarray, shape (n_tracks, n_numbers)
+        turned : bool
+            Whether their clock stays as often turned as it is.
+        """
+        width = self._cleaner.width(self._axes)
+        ends = np.cumsum([width, 1, 1, KNOWN])
+        cleaning, restarts, rejected, last, track = np.split(numbers, ends, axis=1)
+        now = self._cleaner.numbers(ids, self._axes)[:, SEGMENT].tolist()
+        self._tracks.end([_name(*each) for each in zip(ids, now, strict=True)])
+        names = [_name(*each) for each in zip(ids, cleaning[:, SEGMENT].tolist(), strict=True)]
+        self._cleaner.put(ids, cleaning, turned=turned)
+        self._tracks.put(names, track, self._axes)
+        self._restarts.put(ids, restarts[:, 0].astype(np.int64).tolist())
+        self._rows.last.put(ids, last)
+        for id, count in zip(ids, rejected[:, 0].astype(np.int64).tolist(), strict=True):
+            if count:
+                self._rejected[id] = count
+            else:
+                self._rejected.pop(id, None)
+
+    def _sweep(self, silent: float) -> None:
+        """Forget tracks that were silent for so long (s)."""
+        ids, now = self._cleaner.ids, self._cleaner.clock[1]
+        if not ids:
+            return
+        known = self._cleaner.numbers(ids, self._axes)
+        old = known[:, TIME] < now - silent
+        gone = [id for id, is_old in zip(ids, old.tolist(), strict=True) if is_old]
+        names = [_name(id, s) for id, s in zip(gone, known[old, SEGMENT].tolist(), strict=True)]
+        self._tracks.end(names)
+        self._cleaner.forget(gone)
+        self._gone += [sum(self._rejected.pop(id, 0) for id in gone), sum(self._restarts.of(gone))]
+        self._restarts.put(gone, [0] * len(gone))
+        self._rows.last.forget(gone)
+        for id in gone:
+            self.recent.pop(id, None)
+        self.counts["forgotten"] += len(gone)
+
+
+def check_rules(rules: Cleaning, lateness: float, forget: float | None) -> None:
+    """Raise ValueError for numbers out of range, and for rules that need rows to come."""
+    if not 0 <= lateness < math.inf:
+        raise ValueError(f"lateness: must be a finite number of seconds >= 0, got {lateness:g}")
+    if forget is not None and not lateness < forget < math.inf:
+        raise ValueError(
+            f"forget: must be a finite number of seconds above that of `lateness`, got {forget:g}"
+        )
+    if rules.duplicates != "error":
+        raise ValueError(
+            f"duplicates: {rules.duplicates} needs the rows to come; of a live feed the first plot "
+            "of equal times stands, and the others are counted"
+        )
+    if lateness and rules.max_coast is not None:
+        raise ValueError(
+            "max_coast: a late plot may change which rows are left out, and an answer cannot be "
+            "called back; leave it out, or `lateness`"
+        )
+
+
+# -------------------------------------------------------------------- rows and columns
+
+
+def _name(id: str, segment: float) -> str:
+    """Name of a track as `Piece.tracks` has it."""
+    return f"{id}\0{int(segment)}" if segment else id
+
+
+def _ids(piece: Piece) -> list[str]:
+    names = piece.ids.names
+    return [names[code] for code in piece.ids.codes.tolist()]
+
+
+def _equal(one: Iterable[float], other: Iterable[float]) -> bool:
+    """Whether positions are equal, with NaN in the same axes."""
+    return all(a == b or (a != a and b != b) for a, b in zip(one, other, strict=True))
+
+
+def _row(piece: Piece, k: int) -> Row:
+    sigma = None if piece.sigma is None else tuple(piece.sigma[k].tolist())
+    cell = None if piece.time_cells is None else piece.time_cells[k]
+    plot = tuple(piece.plots[k].tolist())
+    return Row(float(piece.time[k]), plot, sigma, cell, int(piece.rows[k]))
+
+
+def _piece(ids: Sequence[str], counts: Sequence[int], rows: Sequence[Row], file: str) -> Piece:
+    """Rows of some tracks as a piece, one track after the other."""
+    return Piece(
+        Words(tuple(ids), np.repeat(np.arange(len(ids)), counts)),
+        np.array([row.time for row in rows]),
+        np.array([row.plot for row in rows]),
+        np.array([row.line for row in rows], dtype=np.int64),
+        file,
+        sigma=None if rows[0].sigma is None else np.array([row.sigma for row in rows]),
+        time_cells=None if rows[0].cell is None else [row.cell for row in rows],
+    )
+
+
+def _digests(columns: dict[str, Any], names: Sequence[str]) -> list[bytes]:
+    """Digest of each answer, by the bits of its numbers; its identity and time do not change."""
+    numbers = [columns[name] for name in names if isinstance(columns.get(name), np.ndarray)]
+    table = np.column_stack([np.asarray(each, dtype=np.float64) for each in numbers])
+    # Of the several NaN of a processor, one.
+    table[np.isnan(table)] = math.nan
+    return [blake2b(row.tobytes(), digest_size=8).digest() for row in table]
+
+
+def _taken(values: Any, places: NDArray[np.intp]) -> Any:
+    if isinstance(values, np.ndarray):
+        return values[places]
+    return [values[place] for place in places.tolist()]
+
+
+def _joined(parts: Sequence[_Part], names: Sequence[str]) -> Answers:
+    """Answers of all parts in the order of the lines, after each line those that it has changed."""
+    if not parts:
+        return Answers({name: np.empty(0) for name in names}, np.empty(0, dtype=np.int64))
+    if len(parts) == 1 and not parts[0].order.any():
+        return Answers({name: parts[0].columns[name] for name in names}, parts[0].lines)
+    lines = np.concatenate([part.lines for part in parts])
+    order = np.lexsort((np.concatenate([part.order for part in parts]), lines))
+    columns: dict[str, Any] = {}
+    for name in names:
+        values = [part.columns[name] for part in parts]
+        if all(isinstance(each, np.ndarray) for each in values):
+            columns[name] = np.concatenate(values)[order]
+        else:
+            every = [cell for each in values for cell in each]
+            columns[name] = [every[place] for place in order.tolist()]
+    return Answers(columns, lines[order])
