@@ -106,7 +106,7 @@ def _pictures(
     def track() -> Figure:
         from fuzzytrack.plotting import plot_track
 
-        return plot_track(results[BEST], truth)[0]
+        return plot_track(results[BEST], truth, gains=True)[0]
 
     def errors() -> Figure:
         from fuzzytrack.plotting import plot_errors

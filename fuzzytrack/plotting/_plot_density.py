@@ -14,8 +14,8 @@ __all__ = ["draw_density"]
 
 # Without the palest, so that single plots are seen.
 _GRAYS = LinearSegmentedColormap.from_list("grays", ["0.85", "0.35"])
-# Cells along the longer side.
-_CELLS = 160
+# Cells along the longer side: so many that each has some plots, between these limits.
+_CELLS = (60, 160)
 # Counts that differ by more than this factor are colored on a logarithmic scale.
 _APART = 30.0
 
@@ -38,9 +38,10 @@ def draw_density(
     known = np.isfinite(x) & np.isfinite(y)
     x, y = x[known], y[known]
     width, height = np.ptp(x) or 1.0, np.ptp(y) or 1.0
-    across, up = _CELLS, 3 * _CELLS // 4
+    along = int(np.clip(np.sqrt(len(x)) / 2, *_CELLS))
+    across, up = along, 3 * along // 4
     if aspect is not None:
-        cell = max(width, height * aspect) / _CELLS
+        cell = max(width, height * aspect) / along
         across, up = (max(1, int(np.ceil(side / cell))) for side in (width, height * aspect))
     counts, left, below = np.histogram2d(x, y, bins=(across, up))
     most, middle = counts.max(), np.median(counts[counts > 0])

@@ -13,6 +13,7 @@ from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = [
+    "MARKED",
     "Project",
     "ShownTracks",
     "Track",
@@ -26,6 +27,9 @@ __all__ = [
 Track = int | tuple[int, ...]
 #: Positions as they are drawn, of positions of shape (n, n_axes) as they were tracked.
 Project = Callable[[Array], Array]
+
+#: Steps of a track up to which every one has its marks.
+MARKED = 75
 
 _FIELDS = ("time", "measured", "predicted", "filtered", "innovation", "alpha", "beta", "gamma")
 _Part = dict[str, Array]
@@ -130,12 +134,18 @@ class ShownTracks:
         some = after > first
         return known[first[some]], known[after[some] - 1]
 
+    @property
+    def marked(self) -> bool:
+        """Whether it is one track with marks at every step, predictions among them."""
+        return len(self) == 1 and len(self.time) <= MARKED
+
     def projected(self, project: Project) -> ShownTracks:
-        """Tracks at other positions."""
+        """Tracks at other positions; predictions that are not drawn are NaN."""
+        none = np.full_like(self.predicted, np.nan)
         return replace(
             self,
             measured=project(self.measured),
-            predicted=project(self.predicted),
+            predicted=project(self.predicted) if self.marked else none,
             filtered=project(self.filtered),
         )
 
@@ -214,8 +224,8 @@ def place_of(result: object, track: Track | None) -> tuple[int, ...]:
 def one_track(values: NDArray[Any], place: tuple[int, ...]) -> NDArray[Any]:
     """Values of one track, shape (n_steps, n_axes)."""
     # The batch in front, to be indexed away.
-    moved = np.moveaxis(values, 0, len(place))[place] if place else values
-    return np.asarray(moved).reshape(len(values), -1)
+    moved = np.asarray(np.moveaxis(values, 0, len(place))[place] if place else values)
+    return moved if moved.ndim > 1 else moved[:, None]
 
 
 def true_positions(truth: ArrayLike, result: TrackResult, place: tuple[int, ...]) -> Array:
@@ -233,4 +243,4 @@ def true_positions(truth: ArrayLike, result: TrackResult, place: tuple[int, ...]
     if actual.shape != (len(result.measured), *whole[len(place) + 1 :]):
         allowed = f"{whole} or {(whole[0], whole[-1])}" if len(whole) > 2 else f"{whole}"
         raise ValueError(f"truth: shape {actual.shape} does not fit the plots; needed is {allowed}")
-    return actual.reshape(len(actual), -1)
+    return actual if actual.ndim > 1 else actual[:, None]

@@ -17,7 +17,7 @@ from fuzzytrack.plotting._track_styles import darker
 __all__ = ["label_ends"]
 
 # Distances from the end of a track to its label, in points, and directions that are tried.
-_DISTANCES = (5.0, 10.0)
+_DISTANCES = (7.0, 12.0)
 _DIRECTIONS = ((1, 0), (1, 1), (1, -1), (-1, 0), (-1, 1), (-1, -1), (0, 1), (0, -1))
 _ANCHORS = {1: ("left", "bottom"), 0: ("center", "center"), -1: ("right", "top")}
 # Side of the squares in which the picture is divided to find free places, in pixels.

@@ -19,6 +19,7 @@ from fuzzytrack.plotting._maneuvers import maneuvers_of
 from fuzzytrack.plotting._plot_density import draw_density
 from fuzzytrack.plotting._position_axes import PositionAxes, spread, time_unit
 from fuzzytrack.plotting._shown_tracks import (
+    MARKED,
     Project,
     ShownTracks,
     Track,
@@ -33,8 +34,6 @@ from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["plot_track", "plot_tracks"]
 
-# Steps of a track up to which every one has its marks.
-_MARKED = 75
 # Plots up to which they are drawn one by one.
 _SINGLE = 20_000
 # Tracks up to which each is named.
@@ -202,11 +201,6 @@ class _Picture:
         return self.shown.plots > _SINGLE
 
     @property
-    def marked(self) -> bool:
-        """Whether it is one track with marks at every step."""
-        return len(self.shown) == 1 and len(self.shown.time) <= _MARKED
-
-    @property
     def with_lines(self) -> bool:
         """Whether tracks are drawn as lines."""
         return not self.dense or len(self.shown) <= _NAMED
@@ -261,8 +255,10 @@ class _Picture:
         aspect = self.axes.aspect if plane else None
         self._draw_plots(ax, on, aspect)
         if self.truth is not None:
-            ax.plot(*on.line(self.truth), label="true", **STYLES["true"])
-        if self.marked and np.isfinite(self.shown.predicted).any():
+            # Above a broad line, below marks.
+            above = {} if self.shown.marked else {"linewidth": 0.9, "zorder": 2.9}
+            ax.plot(*on.line(self.truth), label="true", **{**STYLES["true"], **above})
+        if self.shown.marked and np.isfinite(self.shown.predicted).any():
             ax.plot(*on.of(self.shown.predicted), label="predicted", **STYLES["predicted"])
         if self.with_lines:
             self._draw_lines(ax, on)
@@ -290,18 +286,18 @@ class _Picture:
         style, count = dict(STYLES["plots"]), shown.plots
         if not count:
             return
-        if count > _MARKED:
-            style |= {"markersize": 3.0 if count < 10 * _MARKED else 2.0, "markeredgewidth": 0.6}
-            style |= {"alpha": 0.7 if count < 10 * _MARKED else 0.4}
+        if count > MARKED:
+            style |= {"markersize": 3.0 if count < 10 * MARKED else 2.0, "markeredgewidth": 0.6}
+            style |= {"alpha": 0.7 if count < 10 * MARKED else 0.4}
         ax.plot(*on.of(used), label="plots", **style)
 
     def _draw_lines(self, ax: Axes, on: _Coordinates) -> None:
         shown, style = self.shown, dict(STYLES["filtered"])
-        if self.marked:
+        if self.shown.marked:
             style |= {"marker": "o", "markersize": 3.5}
         if self.dense:
             style |= {"linewidth": 0.8}
-        elif not self.marked:
+        elif not self.shown.marked:
             style |= {"linewidth": 1.6}
         if len(shown) == 1:
             if len(shown.ends()[0]):
@@ -337,8 +333,10 @@ class _Picture:
         few = len(shown) <= _NAMED
         if shown.coasted.any():
             style = dict(STYLES["coasted"])
-            if shown.coasted.sum() > _MARKED or not few:
+            if shown.coasted.sum() > MARKED or not few:
                 style |= {"markersize": 2.5, "markerfacecolor": style["color"]}
+            elif len(shown) > 1:
+                style |= {"markersize": 4.5, "markeredgewidth": 0.9}
             ax.plot(*on.of(shown.filtered, shown.coasted), label="coasted", **style)
         if shown.rejected.any():
             self._draw_rejected(ax, on)

@@ -136,11 +136,12 @@ def test_long_tracks_are_lines_with_faint_plots(tracker):
 def test_one_plot_and_none(tracker):
     _, ax = plot_track(tracker.run([1.0], [[3.0, 4.0]]), gains=False)
     assert set(lines(ax)) == {"plots", "filtered", "start"}
-    _, axes = plot_track(tracker.run([0.0, 1.0], np.full((2, 2), np.nan)), gains=True)
-    assert axes[0].get_title() == "no plots"
-    assert axes[1].get_title().startswith("no gains")
-    assert lines(axes[0]) == {}
-    axes[0].figure.canvas.draw()
+    for t, z in (([0.0, 1.0], np.full((2, 2), np.nan)), ([], np.empty((0, 2)))):
+        _, axes = plot_track(tracker.run(t, z), gains=True)
+        assert axes[0].get_title() == "no plots"
+        assert axes[1].get_title().startswith("no gains")
+        assert lines(axes[0]) == {}
+        axes[0].figure.canvas.draw()
 
 
 def test_target_maneuvers_are_shaded_under_the_gains(tracker):
