@@ -16,6 +16,8 @@ def import_graph(package: Path) -> Graph:
     text; of an f-string with constant beginning, all modules that begin so. An import of
     ``package.module`` runs ``package/__init__.py`` first, so that counts as imported too, but not
     by the modules of the package itself: they are always imported by way of it.
+
+    One import does not count: that of ``package.plotting`` in a method ``plot``, which draws.
     """
     files = {_name(path, package): path for path in sorted(package.rglob("*.py"))}
     return {
@@ -67,7 +69,11 @@ def _name(path: Path, package: Path) -> str:
 
 def _imports(name: str, path: Path, modules: set[str]) -> Iterator[str]:
     """Modules that `name` imports, and the packages that this runs."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    drawing = {id(node) for node in _drawing(tree, f"{name.partition('.')[0]}.plotting")}
+    for node in ast.walk(tree):
+        if id(node) in drawing:
+            continue
         for target in _targets(node, modules):
             yield target
             parts = target.split(".")
@@ -75,6 +81,16 @@ def _imports(name: str, path: Path, modules: set[str]) -> Iterator[str]:
                 package = ".".join(parts[:depth])
                 if package in modules and not f"{name}.".startswith(f"{package}."):
                     yield package
+
+
+def _drawing(tree: ast.Module, pictures: str) -> Iterator[ast.ImportFrom]:
+    """Imports of the room of pictures in methods that are called ``plot``."""
+    for kind in ast.walk(tree):
+        for method in kind.body if isinstance(kind, ast.ClassDef) else ():
+            if isinstance(method, ast.FunctionDef) and method.name == "plot":
+                for node in ast.walk(method):
+                    if isinstance(node, ast.ImportFrom) and node.module == pictures:
+                        yield node
 
 
 def _targets(node: ast.AST, modules: set[str]) -> Iterator[str]:

@@ -182,6 +182,21 @@ def test_a_module_imports_the_init_of_another_package_along(tmp_path):
     assert circles(graph) == ["p.q -> p.q.a -> p.r -> p.q"]
 
 
+def test_a_method_plot_may_import_pictures_and_nothing_else_may(tmp_path):
+    drawn = "class A:\n    def plot(self):\n        from p.plotting import draw"
+    sources = {
+        "a": drawn,
+        "b": drawn.replace("plot(self)", "draw(self)"),
+        "c": drawn.replace("plotting", "a"),
+        "d": "def plot():\n    from p.plotting import draw",
+        "plotting": "from p.a import A",
+    }
+    graph = tree(tmp_path, sources)
+    assert graph["p.a"] == set()
+    assert graph["p.b"] == graph["p.d"] == {"p.plotting"}
+    assert graph["p.c"] == {"p.a"}
+
+
 def test_relative_imports_are_refused(tmp_path):
     with pytest.raises(ValueError, match="line 2: write the import with the name of the package"):
         tree(tmp_path, {"a": "x = 1\nfrom . import b"})

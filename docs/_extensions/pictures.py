@@ -66,6 +66,7 @@ bands = {name: (rmse[name] - twice[name], rmse[name] + twice[name]) for name in 
 run = found.sample
 predicted = dict(zip(names, run.predicted))
 distances = dict(zip(names, found.predicted_distance))
+errors = dict(zip(names, zip(found.rmse(), found.rmse_se())))
 """
 
 #: Lines that make the pictures, by the heading under which they are shown.
@@ -94,6 +95,9 @@ PICTURES = {
     ],
     "Gains": [
         'plot_gain_plane(both, "stiffness-damping")',
+        'plot_certificate(ft.certify("stiffness-damping", steps=(1, 4)))',
+        'plot_certificate(ft.certify("omega-schedule"))',
+        'plot_certificate(ft.certify("maneuver", steps=(1, 4), missed=2))',
         'plot_gain_plane(result, mark={"fixed": (0.5377, 0.2018)}, inset=False)',
         "plot_stability_regions()",
         "plot_stability_volume()",
@@ -136,6 +140,7 @@ PICTURES = {
     "Experiments": [
         "plot_error_over_time(found.time, rmse, bands)",
         "plot_error_distribution(distances)",
+        "plot_tracker_errors(errors, measured=found.measured_rmse)",
         "plot_trajectories(run.time, run.truth, run.plots, predicted)",
         'plot_consistency(t, {"stiffness-damping": 2 + 0.3 * np.sin(t)}, (1.5, 2.6), expected=2)',
     ],

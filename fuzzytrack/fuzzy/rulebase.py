@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.html_reprs import Cell, block, paragraph, table, tinted
 from fuzzytrack.reprs import shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["DEFUZZIFICATIONS", "Consequent", "Operators", "Rule", "RuleBase", "TableLayout"]
 
@@ -194,6 +197,12 @@ class RuleBase:
             return f"load_rulebase({shown(self._origin)})"
         variables = f"{', '.join(self.input_names)} -> {', '.join(self.output_names)}"
         return f"<RuleBase {shown(self.name)}: {variables}; {len(self.rules)} rules>"
+
+    def plot(self) -> Figure:
+        """Picture of the sets, the rules and the surfaces, see `fuzzytrack.plotting`."""
+        from fuzzytrack.plotting import plot_rulebase
+
+        return plot_rulebase(self)[0]
 
     def _repr_html_(self) -> str:
         """The table of words, for notebooks; words are tinted by the order of their sets."""

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +24,9 @@ from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.table import InterpolationTable, build_table, default_nodes
 from fuzzytrack.html_reprs import Cell, block, table
 from fuzzytrack.reprs import call, summary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
 
@@ -139,6 +143,20 @@ class FuzzySystem:
         if self.table_nodes != default_nodes(len(self.rules.inputs)):
             options["table_nodes"] = self.table_nodes
         return call("FuzzySystem", [self.rules], options)
+
+    def plot(self, output: str | None = None, **options: Any) -> Figure:
+        """Picture of the control surfaces.
+
+        Parameters
+        ----------
+        output : str, optional
+            Name of one output; all unless given.
+        **options
+            As for `fuzzytrack.plotting.plot_surface`: style, points, inputs, at.
+        """
+        from fuzzytrack.plotting import plot_surface
+
+        return plot_surface(self, output, **options)[0]
 
     def _repr_html_(self) -> str:
         """Its variables and rules, for notebooks."""

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.membership import TAILED, FuzzySet
 from fuzzytrack.html_reprs import block, curves
 from fuzzytrack.reprs import summary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["GRIDS", "Universe", "Variable"]
 
@@ -275,6 +279,12 @@ class Variable:
             name: 0.5 if alone else place / last
             for name, place in zip(self.set_names, places.tolist(), strict=True)
         }
+
+    def plot(self) -> Figure:
+        """Picture of the memberships of the sets."""
+        from fuzzytrack.plotting import plot_memberships
+
+        return plot_memberships(self)[0]
 
     def _repr_html_(self) -> str:
         """Picture of the sets, for notebooks."""

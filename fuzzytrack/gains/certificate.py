@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +31,9 @@ from fuzzytrack.gains.stability import is_stable
 from fuzzytrack.html_reprs import as_text, block, facts, paragraph, table
 from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = [
     "Certificate",
@@ -106,6 +110,12 @@ class Certificate:
         plots = f"up to {counted(missed, 'missed plot')} in a row" if missed else "no missed plots"
         belongs = "" if self.period is None else f"; gains of a period of {self.period:g} s"
         return f"{time}, {plots}{belongs}"
+
+    def plot(self) -> Figure:
+        """Picture of the gains, and of how the error shrinks or grows."""
+        from fuzzytrack.plotting import plot_certificate
+
+        return plot_certificate(self)[0]
 
     def _repr_html_(self) -> str:
         """The verdict, and the norm or the sequence that shows it, for notebooks."""

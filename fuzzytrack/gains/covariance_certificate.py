@@ -29,7 +29,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,6 +39,9 @@ from fuzzytrack.gains.singer import fade
 from fuzzytrack.html_reprs import block, facts, paragraph, table
 from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["CovarianceCertificate", "CovarianceLimits", "certify_covariance", "contraction"]
 
@@ -144,6 +147,12 @@ class CovarianceCertificate:
         if times.missed:
             return f"{time}, up to {counted(times.missed, 'missed plot')} in a row"
         return f"{time}, no missed plots"
+
+    def plot(self) -> Figure:
+        """Picture of how the error shrinks."""
+        from fuzzytrack.plotting import plot_certificate
+
+        return plot_certificate(self)[0]
 
     def _repr_html_(self) -> str:
         """The verdict and how fast errors shrink, for notebooks."""

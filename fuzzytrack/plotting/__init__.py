@@ -7,6 +7,7 @@ A figure that a function makes belongs to pyplot, as with other libraries, and i
 ``matplotlib.figure.Figure``.
 """
 
+from fuzzytrack.plotting.certificates import plot_certificate
 from fuzzytrack.plotting.circle import plot_circle_cost, plot_circle_gains
 from fuzzytrack.plotting.experiments import (
     plot_consistency,
@@ -23,9 +24,11 @@ from fuzzytrack.plotting.rulebases import plot_rulebase, plot_rules
 from fuzzytrack.plotting.stability import plot_stability_regions, plot_stability_volume
 from fuzzytrack.plotting.surfaces import plot_gain_surfaces, plot_relation, plot_surface
 from fuzzytrack.plotting.track_errors import plot_errors
+from fuzzytrack.plotting.tracker_errors import plot_tracker_errors
 from fuzzytrack.plotting.tracks import plot_track, plot_tracks
 
 __all__ = [
+    "plot_certificate",
     "plot_circle_cost",
     "plot_circle_gains",
     "plot_consistency",
@@ -49,6 +52,7 @@ __all__ = [
     "plot_stability_volume",
     "plot_surface",
     "plot_track",
+    "plot_tracker_errors",
     "plot_tracks",
     "plot_trajectories",
 ]

@@ -20,7 +20,7 @@ FONT_SIZE = 9.0
 
 
 def plot_memberships(
-    rules: shared.Rules,
+    rules: shared.Rules | Variable,
     variables: str | Sequence[str] | None = None,
     *,
     axes: Axes | Sequence[Axes] | None = None,
@@ -29,7 +29,7 @@ def plot_memberships(
 
     Parameters
     ----------
-    rules : RuleBase, FuzzySystem, str or path
+    rules : RuleBase, FuzzySystem, Variable, str or path
         What to draw; a name or path as for `fuzzytrack.load_rulebase`.
     variables : str or sequence of str, optional
         Names of inputs and outputs; all, inputs first, unless given.
@@ -51,16 +51,25 @@ def plot_memberships(
     -----
     Llinas et al. (1998), Fig. 3.8.
     """
-    base = shared.rules_of(rules)
-    known = {v.name: v for v in (*base.inputs, *base.outputs)}
+    parts = _parts(rules)
+    known = {variable.name: variable for some in parts.values() for variable in some}
+    roles = {variable.name: role for role, some in parts.items() for variable in some}
     names = [variables] if isinstance(variables, str) else list(variables or known)
     for name in names:
         shared.choice("variables", name, tuple(known))
     figure, grid = shared.panels("axes", axes, len(names), columns=2, size=(5.0, 2.9))
     for ax, name in zip(grid, names, strict=True):
-        role = "input" if name in base.input_names else "output"
-        _draw(ax, known[name], f"{role} {name}", evenly=role == "input")
+        role = roles[name]
+        _draw(ax, known[name], f"{role} {name}", evenly=role != "output")
     return figure, grid
+
+
+def _parts(rules: shared.Rules | Variable) -> dict[str, tuple[Variable, ...]]:
+    """Variables by what they are: inputs and outputs of a rule base, or one variable by itself."""
+    if isinstance(rules, Variable):
+        return {"variable": (rules,)}
+    base = shared.rules_of(rules)
+    return {"input": base.inputs, "output": base.outputs}
 
 
 def _draw(ax: Axes, variable: Variable, title: str, *, evenly: bool) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,9 @@ from fuzzytrack.testbed.marks import best_of, marks_of
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["Comparison", "compare", "compare_tracks"]
 
@@ -61,6 +64,14 @@ class Comparison:
 
     def __repr__(self) -> str:
         return summary(self, "names", "runs", "seed", "sigma")
+
+    def plot(self) -> Figure:
+        """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_tracker_errors`."""
+        from fuzzytrack.plotting import plot_tracker_errors
+
+        pairs = zip(self.predicted_rmse.tolist(), self.predicted_error.tolist(), strict=True)
+        errors = dict(zip(self.names, pairs, strict=True))
+        return plot_tracker_errors(errors, measured=self.measured_rmse)[0]
 
     def _repr_html_(self) -> str:
         """Table of errors, for notebooks."""

@@ -19,6 +19,7 @@ from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
 
 if TYPE_CHECKING:
     import pandas
+    from matplotlib.figure import Figure
 
 __all__ = ["QUANTITIES", "Quantity", "Results", "Sample"]
 
@@ -109,6 +110,14 @@ class Results:
 
     def __repr__(self) -> str:
         return summary(self, "scenario", "names", "runs", "seed", scans=len(self.time))
+
+    def plot(self) -> Figure:
+        """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_tracker_errors`."""
+        from fuzzytrack.plotting import plot_tracker_errors
+
+        pairs = zip(self.rmse().tolist(), self.rmse_se().tolist(), strict=True)
+        errors = dict(zip(self.names, pairs, strict=True))
+        return plot_tracker_errors(errors, measured=self.measured_rmse)[0]
 
     def _repr_html_(self) -> str:
         """Table of errors, for notebooks."""

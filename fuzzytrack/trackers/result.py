@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.html_reprs import as_text, block, facts
 from fuzzytrack.trackers.state import Gains, TrackState
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["KEPT", "ON_REQUEST", "TrackResult", "checked_keep", "velocity_over_ground"]
 
@@ -86,6 +89,20 @@ class TrackResult:
 
     def __repr__(self) -> str:
         return f"TrackResult(shape={self.measured.shape}, kept={self.kept})"
+
+    def plot(self, truth: ArrayLike | None = None, **options: Any) -> Figure:
+        """Picture of one track.
+
+        Parameters
+        ----------
+        truth : array_like, optional
+            True positions, shaped as the plots.
+        **options
+            As for `fuzzytrack.plotting.plot_track`: track (of a batch), axes_names, unit, gains.
+        """
+        from fuzzytrack.plotting import plot_track
+
+        return plot_track(self, truth, **options)[0]
 
     def _repr_html_(self) -> str:
         """Number of plots, and what was made of them, for notebooks."""

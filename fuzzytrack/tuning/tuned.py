@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fuzzytrack.html_reprs import as_text, block, paragraph, table
 from fuzzytrack.io.files import whole_file
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.tuning.criteria import Change
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["Row", "Tuned", "with_head"]
 
@@ -120,6 +124,13 @@ class Tuned:
         as_good = [row.name for row in self.rows[1:-1] if not row.is_worse]
         others = " or ".join(f"the {name}" for name in as_good)
         return f"{found}; but not better than {others}" if as_good else found
+
+    def plot(self) -> Figure:
+        """Picture of the held-out values, see `fuzzytrack.plotting.plot_tracker_errors`."""
+        from fuzzytrack.plotting import plot_tracker_errors
+
+        held_out = {row.name: (row.held_out, math.nan) for row in self.rows}
+        return plot_tracker_errors(held_out, what=f"{self.objective}, held out")[0]
 
     def _repr_html_(self) -> str:
         """The report and the numbers, for notebooks."""

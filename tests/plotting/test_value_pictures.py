@@ -1,0 +1,111 @@
+"""Pictures that values draw of themselves, and those of certificates and of errors of trackers."""
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+
+import fuzzytrack as ft
+from fuzzytrack.gains.certificate import error_matrix
+from fuzzytrack.plotting import plot_certificate, plot_memberships, plot_tracker_errors
+from fuzzytrack.testbed.comparison import compare
+from fuzzytrack.testbed.montecarlo import monte_carlo
+
+FIXED = "fixed:alpha=0.5:beta=0.2"
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def line(ax, label):
+    (found,) = (each for each in ax.lines if each.get_label() == label)
+    return np.array(found.get_data(), dtype=float)
+
+
+def test_a_refuted_set_shows_an_error_that_grows_as_the_certificate_says():
+    found = ft.certify("stiffness-damping", steps=(1, 4))
+    figure, (plane, errors) = plot_certificate(found)
+    plots, sizes = line(errors, "error, with the sequence of gains")
+    assert plots[-1] == len(sizes) - 1 >= 60
+    # Once around, without the function's own way of counting.
+    length = len(found.sequence)
+    growth = sizes[2 * length] / sizes[length]
+    assert growth == pytest.approx(found.growth**length, rel=1e-6)
+    error = np.eye(2)
+    for (alpha, beta), elapsed in zip(found.sequence, found.elapsed, strict=True):
+        error = error_matrix(alpha, beta, elapsed) @ error
+    assert max(abs(np.linalg.eigvals(error))) == pytest.approx(growth, rel=1e-6)
+    shown = set(map(tuple, line(plane, "gains of the sequence").T))
+    assert shown == set(map(tuple, np.unique(found.sequence, axis=0)))
+    assert errors.get_title() == "refuted"
+    assert found.plot() is not figure
+
+
+def test_a_certified_set_shows_the_bound():
+    found = ft.certify("omega-schedule")
+    _, (plane, errors) = plot_certificate(found)
+    _, sizes = line(errors, "bound, for any order of gains")
+    np.testing.assert_allclose(sizes, found.rate ** np.arange(61))
+    corners = line(plane, "corners of the set").T
+    assert {tuple(c) for c in corners} == {tuple(v) for v in found.vertices}
+
+
+def test_gains_from_a_covariance_show_the_contraction():
+    found = ft.certify("maneuver")
+    (errors,) = found.plot().axes
+    plots, left = line(errors, "worst sequence that was found")
+    assert dict(zip(plots[1:], left[1:], strict=True)) == found.contraction
+    assert (plots[0], left[0]) == (0, 1)
+
+
+def test_errors_of_trackers_are_points_with_the_best_one_marked():
+    errors = {"a": (3.0, 0.1), "b$": (2.0, 0.2), "none": (np.nan, np.nan), "far": (90.0, np.nan)}
+    figure, ax = plot_tracker_errors(errors, measured=2.5)
+    points = {c.lines[0].get_ydata()[0]: c.lines[0] for c in ax.containers}
+    assert {place: p.get_xdata()[0] for place, p in points.items()} == {0: 3.0, 1: 2.0, 3: 90.0}
+    assert [place for place, p in points.items() if p.get_color() != points[0].get_color()] == [1]
+    assert ax.get_xscale() == "log"
+    assert line(ax, "the plots themselves")[0].tolist() == [2.5, 2.5]
+    figure.canvas.draw()
+    assert [text.get_text() for text in ax.get_yticklabels()] == ["a", r"b\$", "none", "far"]
+    with pytest.raises(ValueError, match="at least one tracker"):
+        plot_tracker_errors({})
+    _, alone = plot_tracker_errors({"nothing": (np.nan, np.nan)})
+    assert len(alone.containers) == 0
+
+
+def test_values_draw_themselves():
+    rules = ft.load_rulebase("stiffness-damping")
+    assert rules.plot().get_suptitle() == "stiffness-damping"
+    (surface,) = ft.FuzzySystem(rules).plot("damping", style="contour", points=5).axes[:1]
+    assert surface.get_xlabel() == rules.input("E").axis_label
+    (sets,) = rules.output("damping").plot().axes
+    assert sets.get_title() == "variable damping"
+    assert [each.get_label() for each in sets.lines][:4] == list(rules.output("damping").set_names)
+    with pytest.raises(ValueError, match="variables"):
+        plot_memberships(rules.output("damping"), "stiffness")
+    t = np.arange(20.0)
+    result = ft.AlphaBetaTracker(FIXED).run(t, np.stack([t, t**2], axis=1))
+    assert result.plot(truth=result.measured).axes[0].get_xlabel().startswith("x")
+
+
+def test_results_draw_their_errors():
+    t = np.arange(20.0)
+    truth = np.stack([t, t**2], axis=1)
+    for found, rmse in (
+        (compare([FIXED, "chan-style"], t, truth, 1.0, 3, 0), "predicted_rmse"),
+        (monte_carlo("llinas-m2", [FIXED, "chan-style"], runs=3, seed=0), "rmse"),
+    ):
+        (ax,) = found.plot().axes
+        values = getattr(found, rmse)
+        values = values() if callable(values) else values
+        drawn = [c.lines[0].get_xdata()[0] for c in ax.containers]
+        np.testing.assert_allclose(drawn, values)
+    columns = {"t": np.arange(250), "x": np.random.default_rng(0).normal(0, 1, 250).cumsum()}
+    tuned = ft.tune(columns, "fixed", trials=4, folds=2)
+    (ax,) = tuned.plot().axes
+    assert ax.get_xlabel() == "RMS of innovations, held out"
+    drawn = [c.lines[0].get_xdata()[0] for c in ax.containers]
+    np.testing.assert_allclose(drawn, [row.held_out for row in tuned.rows])
