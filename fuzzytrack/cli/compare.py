@@ -1,14 +1,16 @@
-"""The command `compare`: trackers on a true track with simulated noise."""
+"""The command `compare`: trackers on recorded plots, or on true tracks with simulated noise."""
 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
 from fuzzytrack.cli import options
+from fuzzytrack.cli.noise_words import noise_json
 from fuzzytrack.cli.output import (
     paragraph,
     print_json,
@@ -18,13 +20,17 @@ from fuzzytrack.cli.output import (
     show,
     with_error,
 )
-from fuzzytrack.cli.plot_options import reads_positions
+from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.cli.recorded_table import print_recorded
 from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import read_recording, recording_files
 from fuzzytrack.plurals import counted
+from fuzzytrack.recordings.tracking import DEFAULT_TRACKER
+from fuzzytrack.recordings.used_plots import read_used_plots
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.testbed.marks import BEST, WORSE
+from fuzzytrack.testbed.recorded_comparison import compare_used
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers
 
@@ -33,38 +39,99 @@ __all__ = ["DEFAULT_TRACKERS", "compare", "print_comparison", "print_marks", "tr
 DEFAULT_TRACKERS = "maneuver,fixed:alpha=0.5377:beta=0.2018,chan-style,stiffness-damping"
 
 
-@reads_positions
+@reads_plots
 def compare(
     file: options.Plots,
     reading: Reading,
+    truth: Annotated[
+        str | None,
+        typer.Option(metavar="FILE|COL,COL", help="True positions of the plots, or their columns."),
+    ] = None,
     noise: Annotated[
-        float,
-        typer.Option(metavar="SIGMA", help="Standard deviation of the noise on each axis, > 0."),
-    ],
+        float | None,
+        typer.Option(
+            metavar="SIGMA",
+            help="Take FILE as the truth, and simulate plots with this standard deviation.",
+        ),
+    ] = None,
     trackers: Annotated[
-        str, typer.Option(metavar="A,B,C", help="Trackers; see `fuzzytrack trackers`.")
-    ] = DEFAULT_TRACKERS,
-    runs: Annotated[int, typer.Option(min=1, help="Monte Carlo runs.")] = 200,
+        str | None,
+        typer.Option(
+            metavar="A,B,C",
+            help=f"Trackers; see `fuzzytrack trackers`. [default: {DEFAULT_TRACKERS}]",
+        ),
+    ] = None,
+    gate: options.Gate = "auto",
+    runs: Annotated[
+        int | None, typer.Option(min=1, help="Monte Carlo runs, with --noise. [default: 200]")
+    ] = None,
     seed: options.Seed = 0,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
-    """Compare trackers on a true track with simulated noise.
+    """Compare trackers on recorded plots, with or without truth.
 
-    The positions in the file are taken as true. Every tracker sees the same noise, and the same
-    seed gives the same numbers.
+    Without truth, predictions are compared with the next plot: its noise is the same for all
+    trackers. With --noise, FILE holds true positions, to which noise is added.
     """
+    options.load_plugins(plugin)
+    width = number_or(gate, "--gate", {"auto": "auto", "none": None})
+    chosen = trackers_named(trackers or DEFAULT_TRACKERS)
+    if noise is not None:
+        _check_simulated(noise, truth, gate, reading)
+        _compare_simulated(chosen, file, reading, noise, runs or 200, seed, json)
+        return
+    if runs is not None:
+        raise ValueError("--runs: is the number of simulated runs; it needs --noise SIGMA")
+    with progress("reading") as watch:
+        used = read_used_plots(file, reading, truth=truth, gate=width, progress=watch)
+    if trackers is None and not used.has_sigma:
+        say_aside(f"note: compared without {DEFAULT_TRACKER}, which needs the noise of the plots")
+        del chosen[DEFAULT_TRACKER]
+    apart = truth is not None and os.path.exists(truth)
+    with progress("comparing") as watch:
+        texts = {name: name for name in chosen}
+        found = compare_used(texts, used, fit_lag=apart, seed=seed, progress=watch)
+    if json:
+        told = {"file": file, "truth": truth, **noise_json(used.decoder)}
+        print_json({**told, **found.to_json_dict()})
+    else:
+        print_recorded(found, used.decoder)
+
+
+def _check_simulated(noise: float, truth: str | None, gate: str, reading: Reading) -> None:
     if not 0 < noise < math.inf:
         raise ValueError(f"--noise must be > 0, got {noise:g}")
-    options.load_plugins(plugin)
-    chosen = trackers_named(trackers)
+    said = reading.description
+    given = {
+        "--truth": truth is not None,
+        "--gate": gate != "auto",
+        "--sigma": said.sigma not in (None, "auto"),
+        "--sigma-range": said.sigma_range is not None,
+        "--sigma-azimuth": said.sigma_azimuth is not None,
+        "--sigma-elevation": said.sigma_elevation is not None,
+    }
+    for option in (name for name, is_given in given.items() if is_given):
+        raise ValueError(f"{option}: with --noise the file is the truth; leave out one of the two")
+
+
+def _compare_simulated(
+    trackers: dict[str, Tracker],
+    file: str,
+    reading: Reading,
+    noise: float,
+    runs: int,
+    seed: int,
+    json: bool,
+) -> None:
+    """Trackers on the positions of a file, which are taken as true, with simulated noise."""
     with progress("reading") as watch:
         recording = read_recording(PlotFiles.of(recording_files(file), reading), watch)
     for note in recording.findings.notes:
         say_aside(f"note: {note}")
     tracks = [(track.time, track.plots) for track in recording.tracks]
     with progress("comparing") as watch:
-        found = compare_tracks(chosen, tracks, noise, runs, seed, watch)
+        found = compare_tracks(trackers, tracks, noise, runs, seed, watch)
     if json:
         print_json({"file": file, "tracks": len(tracks), **found.to_json_dict()})
     else:

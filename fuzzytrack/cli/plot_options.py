@@ -13,7 +13,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.io.reading import Reading
 
-__all__ = ["number_or", "reads_plots", "reads_positions"]
+__all__ = ["number_or", "reads_plots"]
 
 _Text = str | None
 
@@ -139,21 +139,8 @@ def plot_reading(
 
 def reads_plots(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of `plot_reading`, in place of its argument ``reading``."""
-    return _with_options(command, ())
-
-
-def reads_positions(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command these options but those of noise, for positions that are exact."""
-    return _with_options(command, _NOISE)
-
-
-_NOISE = ("sigma", "sigma_range", "sigma_azimuth", "sigma_elevation")
-
-
-def _with_options(command: Callable[..., None], without: tuple[str, ...]) -> Callable[..., None]:
     own = inspect.signature(command, eval_str=True).parameters
-    every = inspect.signature(plot_reading, eval_str=True).parameters
-    added = {name: each for name, each in every.items() if name not in without}
+    added = inspect.signature(plot_reading, eval_str=True).parameters
 
     @wraps(command)
     def with_options(**given: Any) -> None:

@@ -139,6 +139,8 @@ def _turned(columns: _Cells, rows: Sequence[_Cells], width: int) -> list[str]:
 
 def _entry(head: str, cell: str, longest: int, width: int) -> list[str]:
     """Lines of one cell of a turned table."""
+    if not head:
+        return [" " * _INDENT + each for each in wrapped(cell, width - _INDENT)]
     text = " " * _INDENT + head + " " * (longest - _length(head) + _GAP)
     if _length(text) + _length(cell) <= width:
         return [text + cell]

@@ -1,7 +1,16 @@
-"""Experiments on simulated tracks: Monte Carlo runs, their results, and comparison."""
+"""Experiments on simulated tracks, their results, and comparison, also on recorded plots."""
 
 from fuzzytrack.testbed.comparison import Comparison, compare, compare_tracks
 from fuzzytrack.testbed.montecarlo import monte_carlo
+from fuzzytrack.testbed.recorded_comparison import RecordedComparison, compare_recorded
 from fuzzytrack.testbed.results import Results
 
-__all__ = ["Comparison", "Results", "compare", "compare_tracks", "monte_carlo"]
+__all__ = [
+    "Comparison",
+    "RecordedComparison",
+    "Results",
+    "compare",
+    "compare_recorded",
+    "compare_tracks",
+    "monte_carlo",
+]

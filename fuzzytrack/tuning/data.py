@@ -14,23 +14,15 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.angles import unwrapped
-from fuzzytrack.io.decoder import PlotDecoder
-from fuzzytrack.io.findings import Findings
-from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.reading import Reading
-from fuzzytrack.io.recording import Recording, Track, read_recording
 from fuzzytrack.plurals import counted
-from fuzzytrack.recordings.judge import Judge
-from fuzzytrack.recordings.judging import GateWidth, judge_of
-from fuzzytrack.recordings.ragged import batches, run_judged_tracks
-from fuzzytrack.recordings.restarts import divided
-from fuzzytrack.recordings.tracking import DEFAULT_TRACKER, inputs_of, noise_differs, suited
-from fuzzytrack.recordings.truth import read_truth, true_positions
+from fuzzytrack.recordings.judging import GateWidth
+from fuzzytrack.recordings.ragged import batches
+from fuzzytrack.recordings.truth import true_positions
+from fuzzytrack.recordings.used_plots import read_used_plots
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import streams, truth_of_runs
 from fuzzytrack.simulation.scenario import Scenario
-from fuzzytrack.trackers.catalog import as_tracker
 
 __all__ = ["LEAST_PLOTS", "Batch", "TuningData", "TuningTrack", "joined", "recorded", "simulated"]
 
@@ -311,55 +303,15 @@ def recorded(
     OSError
         If a file cannot be read.
     """
-    files, survey = PlotFiles.of(inputs_of(plots), reading).surveyed()
-    judge = judge_of(files.decoder, gate, survey.noise)
-    recording = read_recording(files)
-    findings, decoder = recording.findings, files.decoder
-    findings.note([survey.missing] if survey.missing else [])
-    tracks = recording.tracks
-    if judge is not None and judge.gate is not None:
-        tracks = _used(tracks, files, judge, findings)
-    true = None if truth is None else read_truth(truth, files)
-    found = tuple(_tuning_track(track, decoder, true) for track in tracks)
-    return TuningData(
-        files.names[0],
-        found,
-        axes_differ=noise_differs(decoder),
-        notes=(*findings.notes, *findings.sentences()),
+    used = read_used_plots(plots, reading, truth=truth, gate=gate)
+    found = tuple(
+        TuningTrack(
+            track.id,
+            track.time,
+            track.plots,
+            None if used.true is None else true_positions(track, used.true),
+            track.sigma,
+        )
+        for track in used.tracks
     )
-
-
-def _used(
-    tracks: Sequence[Track], files: PlotFiles, judge: Judge, findings: Findings
-) -> tuple[Track, ...]:
-    """Tracks without the plots that a gate rejects, divided where it begins them again."""
-    named, differ = DEFAULT_TRACKER, noise_differs(files.decoder)
-    _, tracker = suited(named, as_tracker(named), axes_differ=differ)
-    sigmas = [track.sigma for track in tracks if track.sigma is not None]
-    judged = run_judged_tracks(
-        tracker,
-        [(track.time, track.plots) for track in tracks],
-        files.decoder.sigma,
-        judge,
-        sigmas=sigmas or None,
-        keep=("predicted",),
-    )
-    findings.rejected += sum(int(one.rejected.sum()) for one in judged)
-    findings.restarts += sum(int(one.begins.sum()) for one in judged)
-    used = [
-        replace(track, plots=np.where(one.rejected[:, None], np.nan, track.plots))
-        for track, one in zip(tracks, judged, strict=True)
-    ]
-    return divided(used, judged)[0]
-
-
-def _tuning_track(track: Track, decoder: PlotDecoder, true: Recording | None) -> TuningTrack:
-    if decoder.period is not None:
-        # Without jumps, so that differences are those on the circle.
-        series = unwrapped(track.plots[:, 0], period=decoder.period)
-        track = replace(track, plots=series[:, None])
-    sigma = track.sigma
-    if sigma is None and decoder.sigma is not None:
-        sigma = np.broadcast_to(np.asarray(decoder.sigma, dtype=np.float64), track.plots.shape)
-    truth = None if true is None else true_positions(track, true)
-    return TuningTrack(track.id, track.time, track.plots, truth, sigma)
+    return TuningData(used.name, found, axes_differ=used.axes_differ, notes=used.notes)

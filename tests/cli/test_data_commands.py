@@ -225,7 +225,6 @@ def test_compare_as_json(run, truth):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "Missing option '--noise'"),
         (["--noise", "0"], "--noise must be > 0"),
         (["--noise", "-1"], "--noise must be > 0"),
         (["--noise", "nan"], "--noise must be > 0"),

@@ -1,0 +1,162 @@
+"""Tables of a comparison on recorded plots."""
+
+from __future__ import annotations
+
+import math
+
+from fuzzytrack.cli.noise_words import noise_sentence
+from fuzzytrack.cli.output import paragraph, print_table, say, say_aside, show, with_error
+from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.plurals import counted
+from fuzzytrack.testbed.block_bootstrap import RmsChange
+from fuzzytrack.testbed.marks import BEST, WORSE, best_of
+from fuzzytrack.testbed.recorded_comparison import RecordedComparison
+
+__all__ = ["print_recorded"]
+
+
+def print_recorded(found: RecordedComparison, decoder: PlotDecoder) -> None:
+    """Print how far predictions are off, how consistent they are, and what the words mean."""
+    unit = "deg" if decoder.columns.position == "angle" else "m"
+    say(f"columns: {decoder.columns.sentence}")
+    sigma = noise_sentence(decoder)
+    if sigma:
+        paragraph(f"sigma: {sigma}")
+    for note in found.notes:
+        say_aside(f"note: {note}")
+    if found.lag is not None:
+        paragraph(_lag_sentence(found))
+    say()
+    with_truth = not math.isnan(found.measured_rmse)
+    (_print_errors if with_truth else _print_innovations)(found, unit)
+    say()
+    _print_consistency(found)
+
+
+def _title(found: RecordedComparison, scored: int) -> str:
+    return (
+        f"{counted(found.tracks, 'track')}, {scored} of {counted(found.plots, 'plot')} scored: "
+        "all after the start of their track"
+    )
+
+
+def _lag_sentence(found: RecordedComparison) -> str:
+    assert found.lag is not None
+    if found.lag.unknown:
+        return f"clock: no lag of the plots behind the truth was taken off: {found.lag.unknown}."
+    lag = with_error(found.lag.lag, found.lag.error)
+    if not found.lag.taken_off:
+        return f"clock: plots and truth agree; the fitted lag is {lag} s."
+    return f"clock: the plots are {lag} s behind the truth (fitted), which was taken off."
+
+
+def _interval(change: RmsChange | None) -> str:
+    if change is None:
+        return ""
+    middle, low, high = (_percent(each) for each in (change.change, change.low, change.high))
+    return f"{middle} %" if math.isnan(change.low) else f"{middle} % ({low} to {high})"
+
+
+def _percent(share: float) -> str:
+    """Percent with its sign; large ones without digits that mean nothing."""
+    percent = 100 * share
+    return f"{percent:+.1f}" if abs(percent) < 99.95 else f"{percent:+.3g}"
+
+
+# -------------------------------------------------------------------- accuracy
+
+
+def _print_innovations(found: RecordedComparison, unit: str) -> None:
+    """Table where the truth is not known."""
+    rows = [
+        [score.name, show(score.rms), _interval(score.change), mark]
+        for score, mark in zip(found.scores, found.marks, strict=True)
+    ]
+    rows += [[], ["the plot before", show(found.before), "", ""]]
+    print_table(
+        [f"RMS of innovations ({unit})", "RMS", "vs first (95 %)", ""],
+        rows,
+        title=_title(found, found.scored),
+    )
+    _explain(
+        found,
+        "RMS: distance from predictions to plots. The noise of the plots is in it, the same for "
+        "all trackers: they rank as by their errors, but differ by less.",
+        {
+            BEST: "the least RMS of innovations",
+            WORSE: "worse than the plots themselves; the plot before predicts better",
+        },
+        "RMS of innovations",
+    )
+
+
+def _print_errors(found: RecordedComparison, unit: str) -> None:
+    """Table where it is."""
+    rows = []
+    for score, mark in zip(found.scores, found.marks, strict=True):
+        assert score.true is not None
+        errors = score.true.predicted, score.true.filtered
+        rows.append([score.name, *map(show, errors), _interval(score.true.change), mark])
+    rows += [[], ["the plots themselves", "", show(found.measured_rmse), "", ""]]
+    print_table(
+        [f"RMSE of position ({unit})", "predicted", "filtered", "vs first (95 %)", ""],
+        rows,
+        title=_title(found, found.known),
+    )
+    _explain(
+        found,
+        "",
+        {
+            BEST: "the least RMSE of predicted positions",
+            WORSE: "the filtered positions are worse than the plots themselves",
+        },
+        "predicted RMSE",
+    )
+
+
+def _explain(found: RecordedComparison, what: str, meanings: dict[str, str], compared: str) -> None:
+    if what:
+        paragraph(what)
+    for mark, meaning in meanings.items():
+        if any(mark in each for each in found.marks):
+            paragraph(f"{mark}: {meaning}.")
+    if len(found.scores) > 1:
+        paragraph(
+            f"vs first: change of the {compared} against the first tracker, and its 95 % interval; "
+            "where that holds 0, the plots do not tell which of the two is better."
+        )
+
+
+# -------------------------------------------------------------------- consistency
+
+
+def _print_consistency(found: RecordedComparison) -> None:
+    rows = [
+        [
+            score.name,
+            f"{score.whiteness.correlation:+.2f}",
+            _share(score.outside),
+            "–" if math.isnan(score.log_likelihood) else f"{score.log_likelihood:.3f}",
+        ]
+        for score in found.scores
+    ]
+    best = found.scores[best_of(found.errors) or 0]
+    reach = best.whiteness.reach
+    rows += [[], ["expected", f"± {reach:.2f}", _share(found.expected_outside), "largest"]]
+    print_table(["innovations", "correlation", "outside 3σ", "log-likelihood"], rows)
+    paragraph(
+        "correlation: of each innovation with the one before. Above the range gains are too small, "
+        "and the tracker is late; below it they are too large."
+    )
+    paragraph("outside 3σ: share of plots more than three predicted deviations off on some axis.")
+    paragraph("log-likelihood: mean over plots (nats).")
+    without = [score.name for score in found.scores if math.isnan(score.outside)]
+    if not found.has_sigma:
+        paragraph("–: the noise of the plots is not known.")
+    elif without:
+        names = ", ".join(without)
+        paragraph(f"–: no variance of its predictions, for {names}.")
+
+
+def _share(share: float) -> str:
+    return "–" if math.isnan(share) else f"{100 * share:.1f} %"
