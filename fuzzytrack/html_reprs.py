@@ -219,7 +219,7 @@ def picture(figure: Figure, text: str) -> str:
     """
     import matplotlib.pyplot as plt
 
-    figure.set_size_inches(5, 3.5)
+    # Of its own size: legends are placed for that.
     data = io.BytesIO()
     figure.savefig(data, format="png", dpi=80)
     plt.close(figure)

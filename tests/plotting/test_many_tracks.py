@@ -77,6 +77,15 @@ def test_very_many_tracks_have_colors_but_no_names():
     assert set(lines(ax)) == {"plots", "start", "end"}
 
 
+def test_coasting_of_many_tracks_is_marked_by_dots():
+    results = fan(25)
+    results[3].innovation[4] = np.nan
+    _, ax = plot_tracks(results)
+    (dots,) = (line for line in ax.lines if line.get_label() == "coasted")
+    assert dots.get_markersize() < 3
+    np.testing.assert_array_equal(lines(ax)["coasted"], results[3].filtered[4:5])
+
+
 def test_parts_of_a_track_share_its_color_and_no_line_joins_them():
     first, second, third = fan(3)
     _, ax = plot_tracks([first, second, third], ["a", "b", "a"])
