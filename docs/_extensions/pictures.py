@@ -63,6 +63,14 @@ names = found.names
 rmse = dict(zip(names, found.rmse_per_scan()))
 twice = dict(zip(names, 2 * found.rmse_per_scan_se()))
 bands = {name: (rmse[name] - twice[name], rmse[name] + twice[name]) for name in names}
+overall = dict(zip(names, found.rmse()))
+sure = {name: (v - 2 * e, v + 2 * e) for name, v, e in zip(names, found.rmse(), found.rmse_se())}
+first, last = slice(None, len(found.time) // 2), slice(len(found.time) // 2, None)
+halves = {name: [np.nanmean(rmse[name][part]) for part in (first, last)] for name in names}
+ranges = {
+    name: [[end(rmse[name][part]) for part in (first, last)] for end in (np.nanmin, np.nanmax)]
+    for name in names
+}
 run = found.sample
 predicted = dict(zip(names, run.predicted))
 distances = dict(zip(names, found.predicted_distance))
@@ -138,6 +146,8 @@ PICTURES = {
         "plot_errors(both | many, truth)",
     ],
     "Experiments": [
+        'plot_comparison(overall, sure, reference={"plots": found.measured_rmse})',
+        "plot_comparison(halves, ranges, ['first half', 'second half'])",
         "plot_error_over_time(found.time, rmse, bands)",
         "plot_error_distribution(distances)",
         "plot_tracker_errors(errors, measured=found.measured_rmse)",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -91,7 +92,8 @@ def experiment(
                 folder=folder,
                 resume=resume,
             )
-        written = [] if folder is None else _write(folder, found)
+        command = _command(scenario, trackers, runs, seed, plugin)
+        written = [] if folder is None else _write(folder, found, command)
     except KeyboardInterrupt:
         if output is None:
             raise
@@ -136,7 +138,19 @@ def _folder(output: str, force: bool, resume: bool) -> Path:
     return folder
 
 
-def _write(folder: Path, found: Results) -> list[Path]:
+def _command(
+    scenario: str, trackers: str | None, runs: int, seed: int, plugin: list[str] | None
+) -> str:
+    """Command that gives the same numbers."""
+    words = ["fuzzytrack", "testbed", scenario, "--runs", str(runs), "--seed", str(seed)]
+    if trackers is not None:
+        words += ["--trackers", trackers]
+    for script in plugin or ():
+        words += ["--plugin", script]
+    return shlex.join(words)
+
+
+def _write(folder: Path, found: Results, command: str) -> list[Path]:
     """Write numbers, report and pictures."""
     from fuzzytrack.reports.html_report import report_pictures, write_report
 
@@ -144,7 +158,7 @@ def _write(folder: Path, found: Results) -> list[Path]:
     write_json(written[0], found.to_json_dict(), indent=1)
     with progress("drawing"):
         pictures = report_pictures(found)
-        write_report(written[1], found, pictures=pictures)
+        write_report(written[1], found, pictures=pictures, command=command)
         for name, figure in pictures.items():
             written.append(folder / f"{name}.png")
             _save(written[-1], figure)

@@ -221,14 +221,10 @@ def _methods(noise: str, errors: dict[str, Array]) -> Draw:
         curves[f"{axis}, S3"] = [float(_rmse(errors[m])[:, number].mean()) for m in METHODS]
 
     def draw() -> Figure:
-        from fuzzytrack.plotting.curves import plot_curves
+        from fuzzytrack.plotting.comparison import plot_comparison
 
-        places = range(1, len(METHODS) + 1)
-        figure, axes = plot_curves(
-            places, curves, xlabel="method", ylabel="average RMSE (m)", ylog=True,
-            title=f"{noise} noise",
-        )  # fmt: skip
-        axes.set_xticks(places, METHODS)
+        figure, axes = plot_comparison(curves, categories=METHODS, what="average RMSE")
+        axes.set_title(f"{noise} noise")
         return figure
 
     return draw

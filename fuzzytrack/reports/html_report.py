@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import base64
 import io
-import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from datetime import UTC, datetime
 from html import escape
+from importlib import resources
 from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
-from fuzzytrack.arrays import Array
 from fuzzytrack.io.files import check_output, whole_file
+from fuzzytrack.reports.html_tables import (
+    Column,
+    column_of_least,
+    column_of_numbers,
+    difference,
+    html_table,
+    interval,
+    number,
+)
 from fuzzytrack.reports.pictures import CAPTIONS, LEVEL, report_pictures
-from fuzzytrack.testbed.metrics import PairedDifference
+from fuzzytrack.testbed.marks import WORSE, marks_of
 from fuzzytrack.testbed.results import Results
 from fuzzytrack.version import __version__
 
@@ -27,8 +36,8 @@ __all__ = ["report_pictures", "write_report"]
 
 # Size in bytes above which a picture is embedded as PNG rather than SVG.
 HEAVY = 250_000
-# Numbers from here on are written as powers of ten.
-LARGE = 1e7
+# Of a tracker whose filtered positions are further from the truth than the plots.
+WORSE_NOTE = "worse than the plots"
 
 DEFINITIONS = {
     "Scored scans": (
@@ -72,32 +81,9 @@ PAGE = Template("""\
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>$title</title>
+<meta name="color-scheme" content="light dark">
 <style>
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 64rem; margin: 0 auto;
-  padding: 1rem; }
-h1, h2 { line-height: 1.2; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: right;
-  white-space: nowrap; }
-thead th { vertical-align: bottom; border-bottom: 2px solid #222; white-space: normal; }
-th[scope=row], th.name { text-align: left; overflow-wrap: anywhere; white-space: normal;
-  min-width: 9rem; }
-figure { margin: 1.5rem 0; }
-img { display: block; max-width: 100%; height: auto; margin: 0 auto; }
-figcaption, .note { color: #444; font-size: .92rem; }
-dt { font-weight: 600; margin-top: .6rem; }
-dd { margin-left: 1.2rem; }
-dl.facts { display: grid; grid-template-columns: max-content 1fr; gap: .1rem 1rem; }
-.facts dt, .facts dd { margin: 0; overflow-wrap: anywhere; }
-@media print {
-  body { max-width: none; padding: 0; font-size: 10pt; }
-  .wide { overflow: visible; }
-  th, td { padding: .15rem .35rem; font-size: 8.5pt; }
-  figure, tr, dt { break-inside: avoid; }
-  h2, dt { break-after: avoid; }
-}
-</style>
+$style</style>
 </head>
 <body>
 <h1>$title</h1>
@@ -120,6 +106,8 @@ def write_report(
     *,
     title: str | None = None,
     pictures: Mapping[str, Figure] | None = None,
+    command: str | None = None,
+    date: datetime | None = None,
 ) -> Path:
     """Write the results of an experiment as one HTML page, pictures included.
 
@@ -133,6 +121,11 @@ def write_report(
         Of the page; the name of the scenario unless given.
     pictures : mapping of str to Figure, optional
         Those of `report_pictures`, if they are drawn already.
+    command : str, optional
+        Command that gives these results, to be shown.
+    date : datetime, optional
+        Date of the page, with its time zone; unless given that of the environment variable
+        ``SOURCE_DATE_EPOCH``, seconds since 1970 (UTC), or now.
 
     Returns
     -------
@@ -143,16 +136,21 @@ def write_report(
     ------
     OSError
         If the file cannot be written.
+    ValueError
+        If `date` has no time zone, or ``SOURCE_DATE_EPOCH`` is not a whole number of seconds.
 
     Notes
     -----
-    The page loads nothing from elsewhere. The same results give the same bytes.
+    The page loads nothing from elsewhere, and follows the light or dark mode of the reader. The
+    same results with the same date give the same bytes.
     """
     target = check_output(path)
+    made = _date(date)
     drawn = report_pictures(results) if pictures is None else pictures
     page = PAGE.substitute(
+        style=resources.files(__package__).joinpath("report.css").read_text(encoding="utf-8"),
         title=escape(title or results.scenario),
-        facts=_facts(results),
+        facts=_facts(results, command, made),
         errors=_errors(results),
         consistency=_consistency(results),
         pictures="\n".join(_picture(key, figure) for key, figure in drawn.items()),
@@ -178,24 +176,45 @@ def _picture(key: str, figure: Figure) -> str:
     data = base64.b64encode(drawing.getvalue()).decode("ascii")
     heading, reading = CAPTIONS[key]
     return (
-        f'<figure id="{key}">\n<img alt="{escape(heading)}" src="data:image/{kind};base64,{data}">'
+        f'<figure id="{key}">\n<div class="wide">'
+        f'<img alt="{escape(heading)}" src="data:image/{kind};base64,{data}"></div>'
         f"\n<figcaption><strong>{escape(heading)}.</strong> {escape(reading)}</figcaption>"
         "\n</figure>"
     )
 
 
-def _facts(results: Results) -> str:
+def _date(given: datetime | None) -> datetime:
+    """Date of the page, in UTC."""
+    if given is not None:
+        if given.tzinfo is None:
+            raise ValueError(f"date: needs a time zone, such as datetime.timezone.utc; got {given}")
+        return given.astimezone(UTC)
+    fixed = os.environ.get("SOURCE_DATE_EPOCH")
+    if not fixed:
+        return datetime.now(UTC)
+    try:
+        return datetime.fromtimestamp(int(fixed), UTC)
+    except (ValueError, OverflowError, OSError):
+        raise ValueError(
+            "SOURCE_DATE_EPOCH: must be a whole number of seconds since 1970, within the years "
+            f"that dates can have; got {fixed!r}"
+        ) from None
+
+
+def _facts(results: Results, command: str | None, made: datetime) -> str:
     scans, first = len(results.time), results.first_scored
     facts = {
         "Scenario": results.scenario,
         "Runs": f"{results.runs}",
         "Seed": f"{results.seed}",
         "Scans": f"{scans}, scored from scan {first + 1} (t = {results.time[first]:.6g} s) on",
-        "Plots": f"RMSE {_number(results.measured_rmse)} m",
+        "Plots": f"RMSE {number(results.measured_rmse)} m",
         "Trackers": f"{len(results.names)}",
-        "Made with": f"fuzzytrack {__version__}",
+        "Made with": f"fuzzytrack {__version__}, {made:%Y-%m-%d %H:%M} UTC",
     }
     lines = "\n".join(f"<dt>{key}</dt><dd>{escape(value)}</dd>" for key, value in facts.items())
+    if command is not None:
+        lines += f"\n<dt>Command</dt><dd><code>{escape(command)}</code></dd>"
     warnings = [
         f"{name} predicted no scored scan in {count} of {results.runs} runs."
         for name, count in zip(results.names, results.unstarted_runs.tolist(), strict=True)
@@ -214,26 +233,38 @@ def _errors(results: Results) -> str:
     """Table of errors, a row for each tracker."""
     first, *_ = results.names
     peak = results.peak()
+    changes = [
+        None if name == first else results.paired_difference(first, name, LEVEL)
+        for name in results.names
+    ]
     columns = {
-        "Predicted RMSE (m)": _estimates(results.rmse(), results.rmse_se()),
-        f"Change against {first} (m), {LEVEL:.0%} interval": [
-            "–" if name == first else _change(results.paired_difference(first, name, LEVEL))
-            for name in results.names
-        ],
-        "Filtered RMSE (m)": _estimates(results.rmse("filtered"), results.rmse_se("filtered")),
-        "Mean error (m)": _estimates(results.mean_error(), results.mean_error_se()),
-        "Variance of error (m²)": [_number(v) for v in results.error_variance()],
-        "Peak RMSE (m)": [
-            _number(value) + (f" at {results.time[scan]:.6g} s" if scan >= 0 else "")
-            for value, scan in zip(peak.value, peak.scan.tolist(), strict=True)
-        ],
-        "Cumulative error (m)": _estimates(results.cumulative(), results.cumulative_se()),
+        "Predicted RMSE (m)": column_of_numbers(results.rmse(), results.rmse_se()),
+        f"Change against {first} (m), {LEVEL:.0%} interval": column_of_least(
+            ["–" if change is None else difference(change) for change in changes],
+            [0.0 if change is None else change.difference for change in changes],
+        ),
+        "Filtered RMSE (m)": column_of_numbers(
+            results.rmse("filtered"), results.rmse_se("filtered")
+        ),
+        "Mean error (m)": column_of_numbers(results.mean_error(), results.mean_error_se()),
+        "Variance of error (m²)": column_of_numbers(results.error_variance()),
+        "Peak RMSE (m)": column_of_least(
+            [
+                number(value) + (f" at {results.time[scan]:.6g} s" if scan >= 0 else "")
+                for value, scan in zip(peak.value, peak.scan.tolist(), strict=True)
+            ],
+            peak.value,
+        ),
+        "Cumulative error (m)": column_of_numbers(results.cumulative(), results.cumulative_se()),
     }
     if results.velocity is not None:
-        columns["Velocity RMSE (m/s)"] = _estimates(
+        columns["Velocity RMSE (m/s)"] = column_of_numbers(
             results.rmse("velocity"), results.rmse_se("velocity")
         )
-    return _table(results.names, columns)
+    marks = marks_of(results.rmse(), results.rmse("filtered"), results.measured_rmse)
+    notes = [WORSE_NOTE if WORSE in mark else "" for mark in marks]
+    table = html_table(results.names, columns, notes)
+    return f'{table}\n<p class="note">Marked cells are the best of their column.</p>'
 
 
 def _consistency(results: Results) -> str:
@@ -244,68 +275,18 @@ def _consistency(results: Results) -> str:
         ("NEES of position", results.nees_consistency(LEVEL)),
     ):
         if found is not None:
-            columns[f"{name}, mean"] = [_number(value) for value in found.mean]
-            columns[f"{name}, {LEVEL:.0%} interval if consistent"] = [
-                _interval(low, high) for low, high in zip(found.low, found.high, strict=True)
-            ]
-    return f"<h2>Consistency</h2>\n{_table(results.names, columns)}" if columns else ""
-
-
-def _table(names: Sequence[str], columns: Mapping[str, Sequence[str]]) -> str:
-    head = "".join(f'<th scope="col">{escape(column)}</th>' for column in columns)
-    rows = "\n".join(
-        f'<tr><th scope="row">{escape(name)}</th>'
-        + "".join(f"<td>{escape(cell)}</td>" for cell in cells)
-        + "</tr>"
-        for name, *cells in zip(names, *columns.values(), strict=True)
-    )
-    return (
-        '<div class="wide">\n<table>\n<thead>\n'
-        f'<tr><th scope="col" class="name">Tracker</th>{head}</tr>\n'
-        f"</thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
-    )
+            means = [number(value) for value in found.mean]
+            inside = (found.low <= found.mean) & (found.mean <= found.high)
+            columns[f"{name}, mean"] = Column(means, inside.tolist())
+            columns[f"{name}, {LEVEL:.0%} interval if consistent"] = Column(
+                [interval(low, high) for low, high in zip(found.low, found.high, strict=True)]
+            )
+    if not columns:
+        return ""
+    note = '<p class="note">Marked means are inside of their interval.</p>'
+    return f"<h2>Consistency</h2>\n{html_table(results.names, columns)}\n{note}"
 
 
 def _definitions() -> str:
     lines = (f"<dt>{escape(k)}</dt>\n<dd>{escape(v)}</dd>" for k, v in DEFINITIONS.items())
     return "<dl>\n" + "\n".join(lines) + "\n</dl>"
-
-
-def _estimates(values: Array, errors: Array) -> list[str]:
-    """Estimates with their standard errors, rounded to two digits of these."""
-    return [_estimate(*pair) for pair in zip(values.tolist(), errors.tolist(), strict=True)]
-
-
-def _estimate(value: float, error: float) -> str:
-    if not (math.isfinite(value) and math.isfinite(error)):
-        return _number(value)
-    if abs(value) >= LARGE or not error:
-        return f"{_number(value)} ± {error:.2g}"
-    digits = _digits(error)
-    return f"{value:.{digits}f} ± {error:.{digits}f}"
-
-
-def _change(found: PairedDifference) -> str:
-    if not math.isfinite(found.standard_error) or abs(found.difference) >= LARGE:
-        return f"{_number(found.difference)} {_interval(found.low, found.high)}".strip()
-    digits = _digits(found.standard_error)
-    low, high = (f"{side:+.{digits}f}" for side in (found.low, found.high))
-    return f"{found.difference:+.{digits}f} [{low}, {high}]".replace("-", "−")
-
-
-def _digits(error: float) -> int:
-    """Decimal places that show two digits of a standard error."""
-    return min(12, max(0, 1 - math.floor(math.log10(error)))) if error > 0 else 3
-
-
-def _interval(low: float, high: float) -> str:
-    known = math.isfinite(low) and math.isfinite(high)
-    return f"[{_number(low)}, {_number(high)}]" if known else ""
-
-
-def _number(value: float) -> str:
-    """Number to four digits, or to all before the point; a dash for NaN."""
-    if not math.isfinite(value):
-        return "–"
-    text = f"{value:.0f}" if 1e4 <= abs(value) < LARGE else f"{value:.4g}"
-    return text.replace("-", "−")

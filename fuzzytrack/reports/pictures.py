@@ -20,11 +20,19 @@ __all__ = ["CAPTIONS", "LEVEL", "report_pictures"]
 LEVEL = 0.95
 # Largest number of trackers in the picture of one run.
 SHOWN = 4
+# Part of the path that a close-up shows at most; a larger one is no close-up.
+CLOSE = 0.4
 # Largest number of letters of a name in a legend.
 ROOM = 44
 
 #: Heading and caption of each picture.
 CAPTIONS = {
+    "comparison": (
+        "Errors of the trackers",
+        "Root mean square error over all runs and scored scans, of predicted and of filtered "
+        "positions; further left is better. Lines are two standard errors to either side, about "
+        "95 %. The dashed line is the error of the plots themselves.",
+    ),
     "error-over-time": (
         "Error over time",
         "Root mean square error over runs at each scan, of predicted and of filtered positions; "
@@ -40,8 +48,9 @@ CAPTIONS = {
     "trajectories": (
         "One run",
         f"The first run: the true path, the plots, and what the first {SHOWN} trackers at most "
-        "predicted for each scan, in a plane also close up where one of them erred most. Hollow "
-        "marks are scans without a plot, where the tracker coasted.",
+        "predicted for each scan, in a plane also close up where one of them erred most, unless "
+        "that is much of the path. Hollow marks are scans without a plot, where the tracker "
+        "coasted.",
     ),
     "gain-plane": (
         "Gains used",
@@ -70,11 +79,13 @@ def report_pictures(results: Results) -> dict[str, Figure]:
     Returns
     -------
     dict of str to Figure
-        ``error-over-time``, ``error-distribution``, ``trajectories``, ``gain-plane`` and, where
-        there is NIS, ``consistency``. They do not belong to pyplot; nothing needs closing.
+        ``comparison``, ``error-over-time``, ``error-distribution``, ``trajectories``,
+        ``gain-plane`` and, where there is NIS, ``consistency``. They do not belong to pyplot;
+        nothing needs closing.
     """
     labels = _labels(results.names)
     pictures = {
+        "comparison": _draw_comparison(results, labels),
         "error-over-time": _draw_error_over_time(results, labels),
         "error-distribution": _draw_error_distribution(results, labels),
         "trajectories": _draw_trajectories(results, labels),
@@ -83,6 +94,24 @@ def report_pictures(results: Results) -> dict[str, Figure]:
     if results.nis is not None and not np.isnan(results.nis).all():
         pictures["consistency"] = _draw_consistency(results, labels)
     return pictures
+
+
+def _draw_comparison(results: Results, labels: Sequence[str]) -> Figure:
+    from fuzzytrack.plotting import plot_comparison
+
+    figure = _figure(7.2, 2.2 + 0.6 * len(labels))
+    quantities: tuple[Quantity, ...] = ("predicted", "filtered")
+    for panel, quantity in zip(figure.subplots(2), quantities, strict=True):
+        found, error = results.rmse(quantity), results.rmse_se(quantity)
+        sides = zip((found - 2 * error).tolist(), (found + 2 * error).tolist(), strict=True)
+        plot_comparison(
+            dict(zip(labels, found.tolist(), strict=True)),
+            dict(zip(labels, sides, strict=True)),
+            reference={"plots": results.measured_rmse},
+            what=f"RMSE of {quantity} position",
+            ax=panel,
+        )
+    return figure
 
 
 def _draw_error_over_time(results: Results, labels: Sequence[str]) -> Figure:
@@ -129,6 +158,12 @@ def _draw_trajectories(results: Results, labels: Sequence[str]) -> Figure:
         panels = figure.subplots(1 if n_axes == 2 else n_axes, sharex=True)
         plot_trajectories(run.time, run.truth, run.plots, tracks, ax=panels)
         return figure
+    step = np.median(distance(np.diff(run.truth, axis=0)))
+    reach = 3 * max(float(np.nanmax(away)), float(step)) or 1.0
+    if reach > CLOSE * float(np.linalg.norm(np.ptp(run.truth, axis=0))) > 0:
+        figure = _figure(7.2, 6.6)
+        plot_trajectories(run.time, run.truth, run.plots, tracks, ax=figure.subplots())
+        return figure
     figure = _figure(7.2, 11.0)
     whole, close = figure.subplots(2)
     plot_trajectories(run.time, run.truth, run.plots, tracks, ax=whole)
@@ -146,8 +181,7 @@ def _draw_trajectories(results: Results, labels: Sequence[str]) -> Figure:
         ax=close,
     )
     close.set_title(f"around the largest error, at t = {run.time[worst]:.6g} s", fontsize=10)
-    step = np.median(distance(np.diff(run.truth, axis=0)))
-    reach = 3 * max(float(np.nanmax(away)), float(step)) or 1.0
+    close.locator_params(nbins=5)
     close.set_aspect("equal", adjustable="box")
     close.set(xlim=(-reach, reach), ylim=(-reach, reach))
     return figure

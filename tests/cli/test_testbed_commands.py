@@ -1,8 +1,11 @@
 import csv as csvlib
 import json
+import re
+import shlex
 import signal
 import subprocess
 import sys
+from html import unescape
 
 import numpy as np
 import pytest
@@ -95,11 +98,15 @@ def test_folder(run, fails, own, tmp_path):
     assert {"results.json", "report.html", "error-over-time.png", "trajectories.png"} <= files
     assert all(f"wrote {folder / name}" in result.stdout for name in files)
     assert (folder / "trajectories.png").read_bytes().startswith(b"\x89PNG")
-    assert "chan-style" in (folder / "report.html").read_text()
+    page = unescape((folder / "report.html").read_text())
+    shown = shlex.split(re.search("<code>(.*?)</code>", page)[1])
+    # The command on the page gives the same numbers.
+    assert shown[:3] == ["fuzzytrack", "testbed", str(own)]
+    again = json.loads(run(*shown[1:], "--json").stdout)
     after = json.loads((folder / "results.json").read_text())
     alone = json.loads(run(*words[:-2], "--runs", 15, "--json").stdout)
-    del alone["files"]
-    assert after == alone
+    del alone["files"], again["files"]
+    assert after == alone == again
     # Another job takes the place of the finished one.
     assert run(*words, "--runs", 2, "--seed", 5, "--force").exit_code == 0
     assert json.loads((folder / "results.json").read_text())["runs"] == 2

@@ -2,6 +2,7 @@ import base64
 import math
 import re
 import xml.etree.ElementTree as ET
+from datetime import UTC, datetime, timedelta, timezone
 from html.parser import HTMLParser
 
 import matplotlib
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack.reports import html_report as report
+from fuzzytrack.reports import html_tables
 from fuzzytrack.reports import pictures as report_pictures
 from fuzzytrack.reports.html_report import write_report
 from fuzzytrack.simulation.scenario import PlotNoise, Scenario
@@ -17,7 +19,7 @@ from fuzzytrack.testbed.results import Results, Sample
 from fuzzytrack.trackers.catalog import make_tracker
 
 NAMES = ("plain", "<b>bold & $x$</b>", "_hidden", "long " * 30 + "A", "long " * 30 + "B")
-VOID = {"meta", "img", "br", "hr", "link"}
+VOID = {"meta", "img", "br", "hr", "link", "wbr"}
 
 
 @pytest.fixture(autouse=True)
@@ -73,6 +75,7 @@ class Page(HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.images, self.rows, self.links, self.ids = [], [], [], [], []
+        self.best = []
         self.words = {}
         self.feed(text)
         self.close()
@@ -90,6 +93,8 @@ class Page(HTMLParser):
             self.rows.append([])
         if tag in ("th", "td"):
             self.rows[-1].append("")
+        if given.get("class") == "best":
+            self.best.append((len(self.rows) - 1, len(self.rows[-1]) - 1))
         if tag not in VOID:
             self.open.append(tag)
 
@@ -131,12 +136,12 @@ def test_the_page_needs_nothing_else(both):
     assert all(link.startswith("data:image/") for link in page.links)
     bare = re.sub(r"base64,[A-Za-z0-9+/=]+", "", text)
     assert not re.search(r"https?:|//|url\(|@import|<script|<link|<iframe", bare)
-    assert len(set(page.ids)) == len(page.ids) == 5
+    assert len(set(page.ids)) == len(page.ids) == 6
 
 
 def test_pictures_decode(both):
     _, page = both
-    assert len(page.images) == 5
+    assert len(page.images) == 6
     for image in page.images:
         kind, data = re.fullmatch(r"data:image/(svg\+xml|png);base64,(.+)", image).groups()
         raw = base64.b64decode(data, validate=True)
@@ -218,16 +223,93 @@ def test_title(results, tmp_path, words_only):
     assert page.words["h1"] == page.words["title"] == "Mine & 'yours'"
 
 
-def test_the_same_results_give_the_same_bytes(tmp_path):
+def test_the_same_results_with_the_same_date_give_the_same_bytes(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     few = made_up(names=("a", "b"), nis=False)
-    assert written(tmp_path, few)[0] == written(tmp_path, few)[0]
+    text, page = written(tmp_path, few)
+    assert text == written(tmp_path, few)[0]
+    assert "2023-11-14 22:13 UTC" in page.words["dd"]
+
+
+def test_the_page_is_dated(results, tmp_path, words_only, monkeypatch):
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    before = datetime.now(UTC).replace(second=0, microsecond=0)
+    _, page = written(tmp_path, results)
+    (found,) = re.findall(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", page.words["dd"])
+    assert before <= datetime.strptime(found, "%Y-%m-%d %H:%M UTC").replace(tzinfo=UTC)
+    mine = datetime(2024, 5, 1, 1, 30, tzinfo=timezone(timedelta(hours=2)))
+    assert "2024-04-30 23:30 UTC" in written(tmp_path, results, date=mine)[1].words["dd"]
+    with pytest.raises(ValueError, match="date: needs a time zone"):
+        written(tmp_path, results, date=datetime(2024, 5, 1))
+
+
+@pytest.mark.parametrize("seconds", ["soon", "1.5", "9" * 30])
+def test_a_date_that_is_none(seconds, results, tmp_path, words_only, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", seconds)
+    with pytest.raises(ValueError, match=f"SOURCE_DATE_EPOCH: must be .* got '{seconds}'"):
+        written(tmp_path, results)
+
+
+def test_the_command_is_shown(results, tmp_path, words_only):
+    _, page = written(tmp_path, results, command="fuzzytrack testbed 'a & b'")
+    assert page.words["code"] == "fuzzytrack testbed 'a & b'"
+
+
+def test_the_best_of_each_column_is_marked(tmp_path, words_only):
+    few = made_up(names=("b", "a", "c:d=1"), nis=False)
+    few.predicted[1] = 0.5 * few.predicted[0]
+    text, page = written(tmp_path, few)
+    best = {}
+    for row, column in page.best:
+        best.setdefault(page.rows[0][column], []).append(page.rows[row][0])
+    errors = [head for head in page.rows[0] if "Filtered" not in head and head != "Tracker"]
+    assert {name: best[name] for name in errors if "Velocity" not in name} == {
+        name: ["a"] for name in errors if "Velocity" not in name
+    }
+    # Those of the filtered position and of the velocity are least for the first.
+    assert best["Filtered RMSE (m)"] == best["Velocity RMSE (m/s)"] == ["b"]
+    # A long name may break between its words.
+    assert "c:<wbr>d=1" in text
+
+
+def test_one_tracker_is_not_the_best(tmp_path, words_only):
+    assert written(tmp_path, made_up(names=("a",), nis=False))[1].best == []
+
+
+def test_trackers_worse_than_the_plots_are_marked(tmp_path, words_only):
+    few = made_up(names=("good", "bad"), nis=False)
+    few.filtered[0] *= 0.1
+    few.filtered[1] *= 10
+    text, page = written(tmp_path, few)
+    assert page.words["span"] == "worse than the plots"
+    assert 'bad<span class="worse">' in text
+
+
+def test_means_inside_of_their_interval_are_marked(tmp_path, words_only):
+    few = made_up(names=("a", "b"))
+    few.nis[1] *= 9.0
+    found = few.nis_consistency(0.95)
+    assert (found.mean[1] > found.high[1]) & (found.low[0] < found.mean[0] < found.high[0])
+    _, page = written(tmp_path, few)
+    start = next(k for k, row in enumerate(page.rows) if "NIS, mean" in row)
+    column = page.rows[start].index("NIS, mean")
+    assert [r - start for r, c in page.best if r > start and c == column] == [1]
+
+
+def test_colors_have_a_value_in_light_and_in_dark_mode(both):
+    text, _ = both
+    light, dark = re.findall(r":root \{(.*?)\}", text, flags=re.S)
+    used = set(re.findall(r"var\((--\w+)\)", text))
+    assert used
+    assert "prefers-color-scheme: dark" in text
+    assert all(f"{name}:" in mode for name in used for mode in (light, dark))
 
 
 @pytest.mark.parametrize("n_axes", [1, 3])
 def test_other_axes_of_space_without_what_need_not_be_known(tmp_path, n_axes):
     few = made_up(names=("a",), n_axes=n_axes, nis=False, velocity=False)
     text, page = written(tmp_path, few)
-    assert len(page.images) == 4
+    assert len(page.images) == 5
     assert "Velocity RMSE (m/s)" not in text
     assert "<h2>Consistency" not in text
 
@@ -256,7 +338,7 @@ def test_nothing_scored_at_all_is_still_a_page(tmp_path):
     _, page = written(tmp_path, few)
     assert cell(page, "b", "Predicted RMSE") == "–"
     assert cell(page, "b", "Peak RMSE") == "–"
-    assert len(page.images) == 4
+    assert len(page.images) == 5
 
 
 @pytest.mark.parametrize(
@@ -274,7 +356,7 @@ def test_nothing_scored_at_all_is_still_a_page(tmp_path):
     ],
 )
 def test_digits_that_the_standard_error_leaves(value, error, text):
-    (found,) = report._estimates(np.array([value]), np.array([error]))
+    (found,) = html_tables.estimates(np.array([value]), np.array([error]))
     assert found == text
 
 
@@ -298,6 +380,7 @@ def test_pictures_name_every_tracker_and_keep_their_colors(results):
     pictures = report_pictures.report_pictures(results)
     assert list(pictures) == list(report_pictures.CAPTIONS)
     colors = []
+    del pictures["comparison"]
     for key, figure in pictures.items():
         legend = next(a.get_legend() for a in figure.axes if a.get_legend())
         handles = dict(
@@ -312,6 +395,8 @@ def test_pictures_name_every_tracker_and_keep_their_colors(results):
 
 def test_one_run_is_also_shown_close_up_where_a_tracker_erred_most():
     few = made_up(names=("a", "b"), nis=False)
+    for positions in (few.sample.truth, few.sample.plots, few.sample.predicted):
+        positions[:] += 9000.0 * np.arange(9)[:, None]
     few.sample.predicted[:, :2] = np.nan
     # Larger, but not scored.
     few.sample.predicted[0, 2] += 900.0
@@ -322,6 +407,22 @@ def test_one_run_is_also_shown_close_up_where_a_tracker_erred_most():
     assert close.get_title() == "around the largest error, at t = 12 s"
     assert close.get_xlim()[1] > 3 * 250
     assert whole.get_legend() is None
+
+
+def test_no_close_up_where_it_would_show_the_whole_path():
+    few = made_up(names=("a", "b"), nis=False)
+    few.sample.predicted[1, 6] += 300.0
+    (whole,) = report_pictures.report_pictures(few)["trajectories"].axes
+    assert whole.get_legend() is not None
+
+
+def test_comparison_has_intervals_of_two_standard_errors(results):
+    panels = report_pictures.report_pictures(results)["comparison"].axes
+    for panel, quantity in zip(panels, ("predicted", "filtered"), strict=True):
+        assert len(panel.get_yticks()) == len(NAMES)
+        value, error = results.rmse(quantity), results.rmse_se(quantity)
+        bars = [bar.get_segments()[0][:, 0] for bar in panel.collections]
+        np.testing.assert_allclose(bars, np.stack([value - 2 * error, value + 2 * error], axis=1))
 
 
 def test_a_target_and_trackers_at_rest_are_drawn():
