@@ -26,7 +26,11 @@ __all__ = [
 Readers = Mapping[Any, Callable[[str], Any]]
 
 _OPTION = re.compile(r":([^\W\d]\w*)=([^:]*)$")
+# A comma before a parameter, where a colon should be, and a parameter where the name should be.
+_COMMA = re.compile(r"\s*,\s*(?=[^\W\d]\w*\s*=)")
+_BARE = re.compile(r"\s*[^\W\d]\w*\s*=")
 _FILE = (".yaml", ".yml")
+_SUFFIX = re.compile(r"\.ya?ml", re.IGNORECASE)
 
 
 def is_file(name: str) -> bool:
@@ -49,6 +53,7 @@ def split(spec: str, what: str) -> tuple[str, dict[str, str]]:
     ValueError
         If a parameter is given twice, or is not written as name=value.
     """
+    _refuse_commas(spec, what)
     name, options = spec.strip(), {}
     while found := _OPTION.search(name):
         key, value = found.groups()
@@ -63,6 +68,20 @@ def split(spec: str, what: str) -> tuple[str, dict[str, str]]:
             f"example {head.partition(':')[0]}:name=value"
         )
     return name, dict(reversed(options.items()))
+
+
+def _refuse_commas(spec: str, what: str) -> None:
+    """Raise ValueError for parameters with commas between them, or without a name before them."""
+    # The path of a file may hold anything.
+    after = _SUFFIX.split(spec)[-1]
+    name = "NAME:" if after == spec and _BARE.match(spec) else ""
+    if _COMMA.search(after):
+        right = spec[: len(spec) - len(after)] + _COMMA.sub(":", after)
+        raise ValueError(
+            f"{what} {spec!r}: parameters have colons between them; write {name}{right.strip()}"
+        )
+    if name:
+        raise ValueError(f"{what} {spec!r}: a name is missing; write {name}{spec.strip()}")
 
 
 def parameters_of(

@@ -44,9 +44,49 @@ _LOADER: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _FORBIDDEN = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]"
 )
+# First bytes of files that are no text.
+_NO_TEXT = {
+    b"\x1f\x8b": "compressed by gzip",
+    b"\x28\xb5\x2f\xfd": "compressed by zstd",
+    b"PK\x03\x04": "a zip archive",
+}
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _SHOWN_CHARACTERS = 60
 _SHOWN_WORDS = 30
+
+
+# What PyYAML says of a text, whether the mistake is where the part begins that it was reading, and
+# what is to be done.
+_SYNTAX = (
+    (r"found character '\t'", False, "a tab; indent with blanks"),
+    (
+        "while parsing a flow sequence",
+        True,
+        "'[' is closed by no ']', or a comma is missing, before {found}",
+    ),
+    (
+        "while parsing a flow mapping",
+        True,
+        "'{{' is closed by no '}}', or a comma is missing, before {found}",
+    ),
+    (
+        "expected <block end>, but found '<block",
+        False,
+        "wrong indentation: no line above that it may belong to begins in column {column}",
+    ),
+    (
+        "expected <block end>, but found '-'",
+        False,
+        "wrong indentation: no line above that it may belong to begins in column {column}",
+    ),
+    ("could not find expected ':'", True, "no ':' with a blank after it follows this word"),
+    (
+        "mapping values are not allowed",
+        False,
+        "a ':' where none may be: put the text in quotes, or mend the indentation",
+    ),
+    ("while scanning a quoted scalar", True, "the quotation mark is not closed"),
+)
 
 
 class Node:
@@ -288,7 +328,10 @@ class Document:
             return raw.decode("utf-8")
         except UnicodeDecodeError as error:
             before = raw[: error.start].decode("utf-8")
-            message = f"byte 0x{raw[error.start]:02x} is not valid UTF-8"
+            message = f"byte 0x{raw[error.start]:02x} is not valid UTF-8; save the text as UTF-8"
+            for mark, what in _NO_TEXT.items():
+                if raw.startswith(mark):
+                    before, message = "", f"is {what}, not text; unpack it first"
             raise self._at_offset(before, len(before), message) from None
 
     def _at_offset(self, text: str, offset: int, message: str) -> FileError:
@@ -353,11 +396,20 @@ class _Builder:
             parser.dispose()
 
     def _syntax(self, error: yaml.YAMLError) -> FileError:
-        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-        parts = (getattr(error, "context", None), getattr(error, "problem", None))
-        problem = ", ".join(part for part in parts if part) or "a character that is not allowed"
+        start, mark = (getattr(error, f"{part}_mark", None) for part in ("context", "problem"))
+        context, problem = (getattr(error, part, None) or "" for part in ("context", "problem"))
+        for words, at_start, remedy in _SYNTAX:
+            if words in f"{context}, {problem}":
+                found = f"line {mark.line + 1}, column {mark.column + 1}" if mark else "the end"
+                column = mark.column + 1 if mark else 1
+                message = remedy.format(found=found, column=column)
+                mark = start if at_start and start else mark
+                break
+        else:
+            message = ", ".join(filter(None, (context, problem))) or "a forbidden character"
+            mark = mark or start
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        return self.failure(f"not YAML: {problem}", Location(self.file, line, column))
+        return self.failure(f"not YAML: {message}", Location(self.file, line, column))
 
     def _take(self, event: Any) -> None:
         kind = type(event)

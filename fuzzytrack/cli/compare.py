@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Annotated
 
 import typer
@@ -141,6 +143,11 @@ def _compare_simulated(
 def trackers_named(text: str) -> dict[str, Tracker]:
     """Trackers as written after ``--trackers``."""
     names = options.names(text, "--trackers")
+    for before, name in pairwise(names):
+        if re.match(r"\w+\s*=", name):
+            raise ValueError(
+                f"--trackers: {name!r} is a parameter; a colon stands before it: {before}:{name}"
+            )
     found = as_trackers(names)
     for name, tracker in found.items():
         if not getattr(tracker, "causal", True):

@@ -56,7 +56,7 @@ class Commands(TyperGroup):
             try:
                 status = super().main(*args, **extra)
             except Exception as error:
-                line = _line(error)
+                line = _line(error, self)
                 if line is None:
                     raise
                 sys.exit(_complain(line, 2))
@@ -84,11 +84,11 @@ def _with_options(message: str, parameters: Iterable[Any]) -> str:
     return _ARGUMENTS.sub(written, message)
 
 
-def _line(error: Exception) -> str | None:
+def _line(error: Exception, program: Any) -> str | None:
     """Error as one line; None if it is a mistake in this package, which needs the traceback."""
     # Wrong usage; the module of its class depends on the version of typer.
     if hasattr(error, "format_message"):
-        return _usage(error)
+        return _usage(error, program)
     if isinstance(error, FileError) and error.location:
         return one_line(error)
     scripts = ", ".join(script.path for script in loaded_scripts())
@@ -113,12 +113,38 @@ def one_line(error: Exception) -> str:
     return printable(f"error: {error}")
 
 
-def _usage(error: Any) -> str:
+def _usage(error: Any, program: Any) -> str:
     if type(error).__name__ == "NoArgsIsHelpError":
         return str(error.format_message())
     context = getattr(error, "ctx", None)
     where = f" (see {context.command_path} --help)" if context is not None else ""
-    return printable(f"error: {error.format_message().rstrip('.')}{where}")
+    message = error.format_message().rstrip(".")
+    option = getattr(error, "option_name", "") if "No such option" in message else ""
+    meant = _option_meant(error, option, program) if option.startswith("--") else ""
+    if meant:
+        message = f"No such option: {option}{meant}"
+    return printable(f"error: {message}{where}")
+
+
+def _option_meant(error: Any, option: str, program: Any) -> str:
+    """What to write for an option that a command has not: a longer or shorter word, or none."""
+    for other in getattr(error, "possibilities", None) or ():
+        if other.startswith(option) or option.startswith(other):
+            return f"; did you mean {other}?"
+    others = _commands_with(option, program)
+    return f"; it belongs to {', '.join(others)}" if others else ""
+
+
+def _commands_with(option: str, program: Any) -> list[str]:
+    """Commands that have an option, by what is typed to call them."""
+    found = []
+    for name in program.commands:
+        command = program.loaded(name) if hasattr(program, "loaded") else program.commands[name]
+        if hasattr(command, "commands"):
+            found += [f"{name} {below}" for below in _commands_with(option, command)]
+        elif any(option in parameter.opts for parameter in command.params):
+            found.append(name)
+    return found
 
 
 def printable(text: str) -> str:

@@ -16,6 +16,7 @@ __all__ = [
     "as_rulebase",
     "load_rulebase",
     "loads_rulebase",
+    "refuse_other_files",
     "rulebase_path",
     "shipped_rulebases",
 ]
@@ -24,6 +25,7 @@ __all__ = [
 SCHEMA_FILE = "rulebase.schema.json"
 
 _OTHERS = {".fis": "MATLAB's Fuzzy Logic Toolbox", ".fll": "fuzzylite", ".fcl": "IEC 61131-7"}
+_PACKED = (".gz", ".zst", ".zip", ".bz2", ".xz")
 
 _SHIPPED = Shipped("rule base", "rulebases", SCHEMA_FILE, RuleBaseError)
 
@@ -76,15 +78,24 @@ def load_rulebase(name_or_path: str | os.PathLike[str]) -> RuleBase:
     RuleBaseError
         If there is no such name, or the file cannot be read, or is no rule base.
     """
-    _refuse_others(name_or_path)
+    refuse_other_files(name_or_path)
     rules = Reader(_SHIPPED.document(name_or_path)).rulebase()
     return remember_origin(rules, _SHIPPED.spelled(name_or_path))
 
 
-def _refuse_others(name_or_path: str | os.PathLike[str]) -> None:
-    """Raise RuleBaseError for the files of other programs."""
+def refuse_other_files(name_or_path: str | os.PathLike[str]) -> None:
+    """Raise RuleBaseError for the files of other programs, and for compressed ones.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        As for `load_rulebase`.
+    """
     text = os.fspath(name_or_path) if isinstance(name_or_path, str | os.PathLike) else ""
-    program = _OTHERS.get(Path(str(text)).suffix.lower())
+    suffix = Path(str(text)).suffix.lower()
+    if suffix in _PACKED:
+        raise RuleBaseError(f"{text}: is compressed; unpack it, and name the file .yaml")
+    program = _OTHERS.get(suffix)
     if program is not None:
         raise RuleBaseError(
             f"{text}: a file of {program}, which is not read; write its sets and rules as a rule "

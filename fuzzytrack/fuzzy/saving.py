@@ -320,7 +320,10 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
     before = reader.rulebase()
     key = _conditions(before, where)
     if key not in reader.rule_nodes:
-        raise RuleBaseError(f"no rule has exactly the conditions {_spelled(where)}")
+        raise RuleBaseError(
+            f"no rule has exactly the conditions {_spelled(where)}; name a set for each input "
+            "that the rule has"
+        )
     node, shared = reader.rule_nodes[key]
     if shared or node.anchored or _inside_anchor(reader.document, node):
         raise reader.document.error(

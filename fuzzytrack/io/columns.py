@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -286,13 +287,19 @@ def _plain_is(name: str, words: Collection[str]) -> bool:
 # -------------------------------------------------------------------- noise and identity
 
 
+def _noise_column(names: tuple[str, ...], name: str, argument: str, file: str) -> str:
+    if re.match(r"[-+]?\.?[0-9]", name) and name not in names:
+        raise DataError(f"{file}: `{argument}`: {name!r} is no number; write it without a unit")
+    return known(names, name, argument, file)
+
+
 def _noise_columns(names: tuple[str, ...], said: PlotDescription, file: str) -> tuple[str, ...]:
     found: list[str] = []
     for argument in ("sigma", "sigma_range", "sigma_azimuth", "sigma_elevation"):
         value = getattr(said, argument)
         if value == "auto":
             continue
-        found += [known(names, name, argument, file) for name in texts(value)]
+        found += [_noise_column(names, name, argument, file) for name in texts(value)]
     return tuple(dict.fromkeys(found))
 
 

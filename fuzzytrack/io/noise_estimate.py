@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,7 +86,13 @@ class NoiseEstimate:
         )
 
 
-def estimate_noise(time: ArrayLike, plots: ArrayLike, tracks: ArrayLike) -> NoiseEstimate:
+def estimate_noise(
+    time: ArrayLike,
+    plots: ArrayLike,
+    tracks: ArrayLike,
+    *,
+    names: Sequence[str] | None = None,
+) -> NoiseEstimate:
     """Estimate the standard deviation of plots, without knowing where the targets were.
 
     Parameters
@@ -97,6 +104,8 @@ def estimate_noise(time: ArrayLike, plots: ArrayLike, tracks: ArrayLike) -> Nois
     tracks : array_like of int, shape (n,)
         Number of the track of each plot. Those of a track are in order of time; other tracks may
         lie between them.
+    names : sequence of str, optional
+        Names of the axes, for messages; ``axis 0`` and so on unless given.
 
     Returns
     -------
@@ -142,7 +151,8 @@ def estimate_noise(time: ArrayLike, plots: ArrayLike, tracks: ArrayLike) -> Nois
             )
     order = np.argsort(codes, kind="stable")
     times, codes = times[order], codes[order]
-    axes = [_axis(times, places[order, k], codes, k) for k in range(places.shape[1])]
+    named = names or [f"axis {k}" for k in range(places.shape[1])]
+    axes = [_axis(times, places[order, k], codes, name) for k, name in enumerate(named)]
     sigma = np.array([axis.sigma for axis in axes])
     errors = np.array([axis.error for axis in axes])
     # From relative numbers: squares of plots may be out of range.
@@ -180,7 +190,7 @@ class _Axis:
     rounded: bool = False
 
 
-def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: int) -> _Axis:
+def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: str) -> _Axis:
     """Estimate of an axis; rows are in order of tracks."""
     seen = np.isfinite(plots) & np.isfinite(times)
     times, plots, codes = times[seen], plots[seen], codes[seen]
@@ -189,7 +199,7 @@ def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: int) -> _A
     chosen = _Differences.of(times[apart], plots[apart], codes[apart])
     if len(chosen.values) < FEWEST:
         raise DataError(
-            f"too few plots to estimate their noise: axis {axis} has "
+            f"too few plots to estimate their noise: {axis} has "
             f"{counted(len(chosen.values), 'run')} of {_ORDER + 1} plots in one track; {FEWEST} "
             "are needed. `sigma` gives it"
         )
@@ -253,18 +263,18 @@ def _grid(plots: Array, least: float) -> float:
     return step
 
 
-def _check_rounded(plots: Array, grid: float, repeated: Mask, axis: int) -> None:
+def _check_rounded(plots: Array, grid: float, repeated: Mask, axis: str) -> None:
     """Raise DataError unless plots without noise stay on a grid, as those of a slow target do."""
     if repeated.mean() < 0.5:
         raise DataError(
-            f"plots: those of axis {axis} have no noise that could be estimated: more than half of "
+            f"plots: those of {axis} have no noise that could be estimated: more than half of "
             "their differences of third order are 0; give `sigma`"
         )
     with np.errstate(over="ignore"):
         moves = np.abs(np.diff(plots))
     if not grid or np.median(moves[moves > 0]) > 3 * grid:
         raise DataError(
-            f"plots: {100 * repeated.mean():.0f} % of those of axis {axis} repeat the one before, "
+            f"plots: {100 * repeated.mean():.0f} % of those of {axis} repeat the one before, "
             "so that their noise cannot be estimated; leave old positions out, or give `sigma`"
         )
 

@@ -310,7 +310,8 @@ class PlotFiles:
             turn = 2 * math.pi / self.decoder.radians(1)
             angle = unwrapped(plots[:, 1], clean.ids.codes, turn)
             plots = np.column_stack([plots[:, :1], angle, plots[:, 2:]])
-        return estimate_noise(clean.time, plots, clean.ids.codes)
+        names = self.columns.read if self.decoder.noise_is_polar else self.columns.axes
+        return estimate_noise(clean.time, plots, clean.ids.codes, names=names)
 
     def with_survey(self, survey: Survey) -> PlotFiles:
         """Files with what a survey has found, as far as nothing else was said."""

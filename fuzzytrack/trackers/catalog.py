@@ -11,7 +11,7 @@ from typing import Any
 
 from fuzzytrack import specs
 from fuzzytrack.errors import PluginWarning, RuleBaseError
-from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
+from fuzzytrack.fuzzy.loading import load_rulebase, refuse_other_files, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.normalizations import normalizations
 from fuzzytrack.plugins import Registry
@@ -257,6 +257,7 @@ def _make(name: str, options: dict[str, str]) -> Any:
         specs.check_options(options, specs.parameters_of(factory))
         return specs.call_with(factory, options, READERS)
     if kind is None and not specs.is_file(name):
+        refuse_other_files(name)
         names = (*scheduling_rulebases(), *schedulers.names(), *trackers.names())
         raise ValueError(f"no such tracker{suggestion(name, names)}; or a file that ends in .yaml")
     scheduler = take_scheduler(name, options, _start_parameters())

@@ -39,7 +39,7 @@ HOSTILE = {
     "surrogate": ("a: \ud800", (1, 4), "U+D800"),
     "not UTF-8": (b"a: b\nc: \xc3\xa9\xff", (2, 5), "0xff"),
     "UTF-16": ("a: b".encode("utf-16"), (1, 1), "UTF-8"),
-    "not YAML": ("a: [b\nc: d", (2, 2), "not YAML"),
+    "not YAML": ("a: [b\nc: d", (1, 4), "not YAML"),
     "list": ("- a", (1, 1), "mapping"),
 }
 
