@@ -25,7 +25,7 @@ COMMANDS = {
         "track:track",
         "Track the plots of a file, or of several files in their order.",
     ),
-    "compare": ("compare:compare", "Compare trackers on a true track with simulated noise."),
+    "compare": ("compare:compare", "Compare trackers on recorded plots, with or without truth."),
     "testbed": (
         "testbed:experiment",
         "Run trackers on many random draws of a scenario.",
