@@ -340,10 +340,10 @@ class Cleaner:
         piece : Piece
             Rows of these tracks in order of time, as `JudgedRows.seen` gave them.
         """
-        turns = self._turns(piece.ids.names)
         clock, recognizes = self._clock.copy(), self._rules[cleaning_step.RECOGNIZE]
         self._clock[:], self._rules[cleaning_step.RECOGNIZE] = (0.0, math.nan), 0.0
-        places = [self._place(name) for name in piece.ids.names]
+        places = [self._slot[name] for name in piece.ids.names]
+        turns = self._state[places, cleaning_step.TURNS]
         self._state[places, cleaning_step.TURNS] = 0.0
         found = self._judged(piece)[0]
         self._state[places, cleaning_step.TURNS] = turns
@@ -395,12 +395,12 @@ class Cleaner:
         turned : bool
             Whether their clock stays as often turned as it is.
         """
-        n_axes = (numbers.shape[1] - OWN) // 2
-        turns = self._turns(ids, n_axes) if turned else numbers[:, cleaning_step.TURNS]
-        self.numbers(ids, n_axes)
+        now = self.numbers(ids, (numbers.shape[1] - OWN) // 2)
         places = [self._slot[id] for id in ids]
         self._state[places] = numbers
-        self._state[places, cleaning_step.TURNS] = turns
+        if turned:
+            for column in (cleaning_step.TURNS, cleaning_step.WRAPS):
+                self._state[places, column] = now[:, column]
 
     def forget(self, ids: Sequence[str]) -> None:
         """Forget tracks, but for what has been counted in them."""
@@ -410,10 +410,6 @@ class Cleaner:
             self.past += track[cleaning_step.COPIES : cleaning_step.STOPPED]
             self._state[place] = _new_tracks(1, len(track))
             self._free.append(place)
-
-    def _turns(self, ids: Sequence[str], n_axes: int | None = None) -> Array:
-        axes = (self._state.shape[1] - OWN) // 2 if n_axes is None else n_axes
-        return self.numbers(ids, axes)[:, cleaning_step.TURNS]
 
     def _place(self, name: str) -> int:
         place = self._slot.get(name)

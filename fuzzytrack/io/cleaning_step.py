@@ -84,6 +84,7 @@ def clean_rows(
         if state[track + STOPPED] != 0.0:
             kept[i], segments[i] = False, WAITS
             continue
+        turns = state[track + TURNS]
         now = _unwrapped(time[i], track, rules, clock, state)
         time[i] = now
         if state[track + STARTED] != 0.0 and now <= state[track + TIME]:
@@ -92,7 +93,8 @@ def clean_rows(
                 state[track + COPIES] += 1.0
                 segments[i] = COPY
                 continue
-            state[track + STOPPED] = 1.0
+            # It may be from before the clock started again.
+            state[track + STOPPED], state[track + TURNS] = 1.0, turns
             segments[i] = WAITS
             if wrong < 0:
                 wrong = i

@@ -73,7 +73,8 @@ def follow(tmp_path, monkeypatch, capfd):
 
 
 def test_each_line_is_answered_before_the_next_one_comes():
-    with following(*FIXED) as process:
+    # Compiled first, since this feed has not ended yet.
+    with following(*FIXED[:2]) as process:
         send(process, "time,x")
         for time_, x in (0, 10), (1, 12), (2, 14):
             send(process, f"{time_},{x}")
