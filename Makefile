@@ -21,7 +21,7 @@ export MPLBACKEND ?= Agg
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help environment lowest-environment demo test lowest constraints referee lint format docs fuzz bench clean distclean
+.PHONY: help environment lowest-environment install demo walk test lowest constraints referee lint format docs fuzz bench clean distclean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -51,6 +51,8 @@ environment: pyproject.toml | $(BIN)/python ## Install what test, lint and docs 
 lowest-environment: $(LOWEST)/.installed
 
 # ---------------------------------------------------------------- use
+
+install: $(VENV)/.installed ## Set up .venv with fuzzytrack in it
 
 demo: $(VENV)/.installed ## Track a turning target and write pictures and tables to demo/
 	$(BIN)/fuzzytrack demo -o demo --force
@@ -93,6 +95,9 @@ docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; 
 	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
 	$(BIN)/python .ci/pages.py docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
+
+walk: ## Run every command of README and quickstart in a fresh clone, with nothing but PATH
+	$(PYTHON) .ci/walk.py
 
 fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases and rows of CSV, FUZZ_FILES files of each other format
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)

@@ -86,6 +86,7 @@ def test_what_the_page_says_of_its_figures():
     found = json.loads(text)
     assert described(found) == (ROOT / "docs" / "ranking-tables.txt").read_text()
     assert summary(found) == (ROOT / "docs" / "ranking-summary.txt").read_text()
+    assert summary(found) in (ROOT / "README.md").read_text()
     table = {name: changes(found, name) for name in (FIXED, KALMAN, "maneuver", "IMM CV/CA")}
     constant = {name: each["constant T"][0] for name, each in table[FIXED].items()}
     assert min(constant, key=constant.get) == "imm-three"
