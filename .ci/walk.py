@@ -1,10 +1,11 @@
-"""Walk README.md and the quickstart as a newcomer does: in a fresh clone, with an environment of PATH alone.
+"""Walk README.md and the quickstart as a newcomer does: in a fresh clone, with PATH alone.
 
     python .ci/walk.py [PAGE...]
 
-Every command of a page is run exactly as printed, in the order of the page, and then its Python code. A command
-must end with status 0, and write every file that its options name; files and folders that the text
-of the page names must be there at the end. Each command is printed with its time.
+Every command of a page is run exactly as printed, in the order of the page, and then its Python
+code. A command must end with status 0, and write every file that its options name; files and
+folders that the text of the page names must be there at the end. Each command is printed with its
+time.
 """
 
 import os
@@ -20,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "docs/quickstart.md")
 # No command of these pages may take a newcomer longer.
 LONGEST = 300.0  # s
-WRITTEN = re.compile(r"(?:^| )(?:-o|--output|--plot|--csv|--truth|--state)[ =](\S+)")
+WRITTEN = re.compile(r"(?:^| )(?:-o|--output|--plot|--csv|--truth|--state)[ =]([^-\s]\S*)")
 
 
 def blocks(text: str, language: str) -> list[str]:

@@ -1,12 +1,14 @@
-"""What `make docs` looks for in the built pages is found, and nothing else."""
+"""What `make docs` looks for in built pages is found, and what `make walk` looks for on a walk."""
 
 import runpy
+import sys
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = runpy.run_path(str(ROOT / ".ci" / "pages.py"))
+WALK = runpy.run_path(str(ROOT / ".ci" / "walk.py"))
 
 
 @pytest.mark.parametrize(
@@ -69,6 +71,61 @@ def test_the_script_fails_where_there_is_a_fault(tmp_path, capsys):
     (tmp_path / "bad.html").write_text("<p>:::</p>")
     assert main(tmp_path) == 1
     assert "bad.html: a fence that is not rendered: :::" in capsys.readouterr().out
+
+
+def page_with(*lines, rest=""):
+    return "\n".join(("```sh", *lines, "```", rest))
+
+
+def test_commands_of_a_page_and_what_they_show():
+    text = page_with("make demo", "", "ls -l") + "```console\n$ a \\\n b\nout\n$ c\n```\n    d\n"
+    assert list(WALK["commands"](text)) == [
+        ("make demo", []), ("ls -l", []), ("a   b", ["out"]), ("c", [])
+    ]  # fmt: skip
+
+
+def test_files_that_a_page_names():
+    text = page_with(
+        "x > `code.csv`", rest="`a.csv`, `demo/`, `--plot`, [`b.md`](docs/b.md), `ft.run`"
+    )
+    assert WALK["named_files"](text) == {"a.csv", "demo/"}
+
+
+@pytest.mark.parametrize(
+    ("lines", "rest", "fault"),
+    [
+        (["echo 1 > a.csv", "cp a.csv b.csv"], "`b.csv`", None),
+        (["mkdir d", "echo 1 > d/a", "true -o d --truth -o d/a"], "`d/`", None),
+        (["false", "echo 1 > a.csv"], "", "false: ends with status 1"),
+        (["true -o a.csv"], "", "does not write a.csv"),
+        (["touch a.png; true --plot=a.png"], "", "does not write a.png"),
+        (["mkdir d; true -o d"], "", "does not write d"),
+        (["true"], "`a.csv`", "there is no a.csv"),
+        (['test "$(env | grep -c ^FUZZY)" = 0'], "", None),
+        (["sleep 9"], "", "takes longer"),
+    ],
+)
+def test_a_walk(lines, rest, fault, tmp_path, monkeypatch):
+    monkeypatch.setenv("FUZZY_SECRET", "not here")
+    monkeypatch.setitem(WALK["run"].__globals__, "LONGEST", 2.0)
+    (tmp_path / "page.md").write_text(page_with(*lines, rest=rest))
+    found = WALK["walk"]("page.md", tmp_path, tmp_path)
+    assert [fault in each for each in found] == ([True] if fault else [])
+
+
+def test_code_of_a_page_is_run_after_its_commands(tmp_path):
+    (tmp_path / ".venv" / "bin").mkdir(parents=True)
+    (tmp_path / ".venv" / "bin" / "python").symlink_to(sys.executable)
+    text = "```python\nopen('b.csv', 'w').write(open('a.csv').read())\n```\n"
+    (tmp_path / "page.md").write_text(text + page_with("echo 1 > a.csv", rest="`b.csv`"))
+    assert WALK["walk"]("page.md", tmp_path, tmp_path) == []
+
+
+def test_the_walk_is_long_enough():
+    for page in WALK["PAGES"]:
+        commands = [words for words, _ in WALK["commands"]((ROOT / page).read_text())]
+        assert sum(words.startswith(".venv/bin/fuzzytrack ") for words in commands) >= 4
+        assert all(words.startswith((".venv/bin/fuzzytrack ", "make ")) for words in commands)
 
 
 def test_the_pictures_of_the_home_page_are_drawn(tmp_path):
