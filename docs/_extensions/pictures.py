@@ -74,7 +74,9 @@ ranges = {
 run = found.sample
 predicted = dict(zip(names, run.predicted))
 distances = dict(zip(names, found.predicted_distance))
-errors = dict(zip(names, zip(found.rmse(), found.rmse_se())))
+nis = found.nis_consistency()
+means = dict(zip(names, nis.scan_mean))
+band = np.fmax.reduce(nis.scan_low), np.fmin.reduce(nis.scan_high)
 """
 
 #: Lines that make the pictures, by the heading under which they are shown.
@@ -150,9 +152,8 @@ PICTURES = {
         "plot_comparison(halves, ranges, ['first half', 'second half'])",
         "plot_error_over_time(found.time, rmse, bands)",
         "plot_error_distribution(distances)",
-        "plot_tracker_errors(errors, measured=found.measured_rmse)",
         "plot_trajectories(run.time, run.truth, run.plots, predicted)",
-        'plot_consistency(t, {"stiffness-damping": 2 + 0.3 * np.sin(t)}, (1.5, 2.6), expected=2)',
+        "plot_consistency(found.time, means, band, expected=2)",
     ],
 }
 

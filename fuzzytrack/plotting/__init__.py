@@ -25,7 +25,6 @@ from fuzzytrack.plotting.rulebases import plot_rulebase, plot_rules
 from fuzzytrack.plotting.stability import plot_stability_regions, plot_stability_volume
 from fuzzytrack.plotting.surfaces import plot_gain_surfaces, plot_relation, plot_surface
 from fuzzytrack.plotting.track_errors import plot_errors
-from fuzzytrack.plotting.tracker_errors import plot_tracker_errors
 from fuzzytrack.plotting.tracks import plot_track, plot_tracks
 
 __all__ = [
@@ -54,7 +53,6 @@ __all__ = [
     "plot_stability_volume",
     "plot_surface",
     "plot_track",
-    "plot_tracker_errors",
     "plot_tracks",
     "plot_trajectories",
 ]

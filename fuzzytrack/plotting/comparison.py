@@ -17,6 +17,8 @@ __all__ = ["plot_comparison"]
 
 # Part of a row that its points are spread over.
 SPREAD = 0.7
+# Letters of a name.
+LONGEST = 40
 # Points that differ by more than this factor are drawn on a logarithmic scale.
 APART = 30.0
 
@@ -62,7 +64,8 @@ def plot_comparison(
 
     Notes
     -----
-    Points are not joined, since there is nothing between two categories. The scale begins at zero
+    Points are not joined, since there is nothing between two categories. In rows of trackers the
+    name of the least number is bold. The scale begins at zero
     where no number is negative; it is logarithmic where numbers are far apart.
     """
     if not isinstance(values, Mapping) or not values:
@@ -100,7 +103,10 @@ def plot_comparison(
             color="0.3",
         )
     _scale(plane, np.concatenate([*points.values(), list((reference or {}).values())]))
-    plane.set_yticks(range(len(names)), names)
+    shown = [name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…" for name in names]
+    plane.set_yticks(range(len(names)), [name.replace("$", r"\$") for name in shown])
+    if categories is None:
+        _mark_least(plane, [float(row[0]) for row in points.values()])
     plane.set_ylim(len(names) - 0.5, -0.5)
     plane.tick_params(axis="y", length=0)
     plane.set_xlabel(f"{what} ({unit})" if unit else what)
@@ -111,6 +117,13 @@ def plot_comparison(
     if categories is not None:
         shared.legend_below(plane)
     return figure, plane
+
+
+def _mark_least(ax: Axes, values: Sequence[float]) -> None:
+    """Bold name of the row with the least value; none if only one is known."""
+    known = [value for value in values if np.isfinite(value)]
+    if len(known) > 1:
+        ax.get_yticklabels()[values.index(min(known))].set_fontweight("bold")
 
 
 def _fitting(name: str, values: ArrayLike, count: int) -> Array:

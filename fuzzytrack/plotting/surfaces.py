@@ -245,7 +245,7 @@ def _map(ax: Axes, picture: _Picture) -> None:
     if between:
         ax.contour(x, y, values, levels=between, colors="white", linewidths=0.5, alpha=0.6)
     _colorbar(ax, filled, low, high, label=picture.label)
-    _name_inputs(ax, picture, 8)
+    _name_inputs(ax, picture, 5)
 
 
 def _perspective(ax: Any, picture: _Picture) -> None:
@@ -270,8 +270,8 @@ def _perspective(ax: Any, picture: _Picture) -> None:
     _colorbar(ax, colors, low, high, shrink=0.62, pad=0.03)
     _name_inputs(ax, picture, 4, width=22)
     # The labels run beside the ticks' numbers; those of two lines need more room.
-    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
-        axis.labelpad = 18 if "\n" in axis.get_label_text() else 7
+    for axis, pad in ((ax.xaxis, 7), (ax.yaxis, 7), (ax.zaxis, 11)):
+        axis.labelpad = pad + 11 if "\n" in axis.get_label_text() else pad
     # At the front corner the numbers of both axes would touch.
     ax.tick_params(axis="x", pad=6)
     ax.tick_params(axis="y", pad=-1)

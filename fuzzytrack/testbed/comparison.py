@@ -66,12 +66,15 @@ class Comparison:
         return summary(self, "names", "runs", "seed", "sigma")
 
     def plot(self) -> Figure:
-        """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_tracker_errors`."""
-        from fuzzytrack.plotting import plot_tracker_errors
+        """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_comparison`."""
+        from fuzzytrack.plotting import plot_comparison
 
-        pairs = zip(self.predicted_rmse.tolist(), self.predicted_error.tolist(), strict=True)
-        errors = dict(zip(self.names, pairs, strict=True))
-        return plot_tracker_errors(errors, measured=self.measured_rmse)[0]
+        found, spread = self.predicted_rmse, 2 * self.predicted_error
+        return plot_comparison(
+            dict(zip(self.names, found, strict=True)),
+            dict(zip(self.names, zip(found - spread, found + spread, strict=True), strict=True)),
+            reference={"plots": self.measured_rmse},
+        )[0]
 
     def _repr_html_(self) -> str:
         """Table of errors, for notebooks."""

@@ -112,12 +112,15 @@ class Results:
         return summary(self, "scenario", "names", "runs", "seed", scans=len(self.time))
 
     def plot(self) -> Figure:
-        """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_tracker_errors`."""
-        from fuzzytrack.plotting import plot_tracker_errors
+        """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_comparison`."""
+        from fuzzytrack.plotting import plot_comparison
 
-        pairs = zip(self.rmse().tolist(), self.rmse_se().tolist(), strict=True)
-        errors = dict(zip(self.names, pairs, strict=True))
-        return plot_tracker_errors(errors, measured=self.measured_rmse)[0]
+        found, spread = self.rmse(), 2 * self.rmse_se()
+        return plot_comparison(
+            dict(zip(self.names, found, strict=True)),
+            dict(zip(self.names, zip(found - spread, found + spread, strict=True), strict=True)),
+            reference={"plots": self.measured_rmse},
+        )[0]
 
     def _repr_html_(self) -> str:
         """Table of errors, for notebooks."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -126,11 +125,11 @@ class Tuned:
         return f"{found}; but not better than {others}" if as_good else found
 
     def plot(self) -> Figure:
-        """Picture of the held-out values, see `fuzzytrack.plotting.plot_tracker_errors`."""
-        from fuzzytrack.plotting import plot_tracker_errors
+        """Picture of the held-out values, see `fuzzytrack.plotting.plot_comparison`."""
+        from fuzzytrack.plotting import plot_comparison
 
-        held_out = {row.name: (row.held_out, math.nan) for row in self.rows}
-        return plot_tracker_errors(held_out, what=f"{self.objective}, held out")[0]
+        held_out = {row.name: row.held_out for row in self.rows}
+        return plot_comparison(held_out, what=f"{self.objective}, held out", unit="")[0]
 
     def _repr_html_(self) -> str:
         """The report and the numbers, for notebooks."""

@@ -44,6 +44,14 @@ def test_a_row_for_each_tracker_without_categories():
     assert ax.get_xlim()[0] == 0
 
 
+def test_the_least_is_bold_and_long_names_are_cut():
+    names = ["a", "b$", "x" * 60, "none"]
+    figure, ax = plot_comparison(dict(zip(names, [3.0, 2.0, 9.0, np.nan], strict=True)))
+    figure.canvas.draw()
+    assert [t.get_fontweight() == "bold" for t in ax.get_yticklabels()] == [0, 1, 0, 0]
+    assert rows(ax) == ["a", r"b\$", "x" * 39 + "…", "none"]
+
+
 def test_a_reference_is_a_line_with_its_name():
     _, ax = plot_comparison({"a": 1.0}, reference={"plots": 5.0})
     assert [5.0, 5.0] in [list(line.get_xdata()) for line in ax.lines]

@@ -6,7 +6,7 @@ from matplotlib import pyplot as plt
 
 import fuzzytrack as ft
 from fuzzytrack.gains.certificate import error_matrix
-from fuzzytrack.plotting import plot_certificate, plot_memberships, plot_tracker_errors
+from fuzzytrack.plotting import plot_certificate, plot_memberships
 from fuzzytrack.testbed.comparison import compare
 from fuzzytrack.testbed.montecarlo import monte_carlo
 
@@ -60,22 +60,6 @@ def test_gains_from_a_covariance_show_the_contraction():
     assert (plots[0], left[0]) == (0, 1)
 
 
-def test_errors_of_trackers_are_points_with_the_best_one_marked():
-    errors = {"a": (3.0, 0.1), "b$": (2.0, 0.2), "none": (np.nan, np.nan), "far": (90.0, np.nan)}
-    figure, ax = plot_tracker_errors(errors, measured=2.5)
-    points = {c.lines[0].get_ydata()[0]: c.lines[0] for c in ax.containers}
-    assert {place: p.get_xdata()[0] for place, p in points.items()} == {0: 3.0, 1: 2.0, 3: 90.0}
-    assert [place for place, p in points.items() if p.get_color() != points[0].get_color()] == [1]
-    assert ax.get_xscale() == "log"
-    assert line(ax, "the plots themselves")[0].tolist() == [2.5, 2.5]
-    figure.canvas.draw()
-    assert [text.get_text() for text in ax.get_yticklabels()] == ["a", r"b\$", "none", "far"]
-    with pytest.raises(ValueError, match="at least one tracker"):
-        plot_tracker_errors({})
-    _, alone = plot_tracker_errors({"nothing": (np.nan, np.nan)})
-    assert len(alone.containers) == 0
-
-
 def test_values_draw_themselves():
     rules = ft.load_rulebase("stiffness-damping")
     assert rules.plot().get_suptitle() == "stiffness-damping"
@@ -101,11 +85,11 @@ def test_results_draw_their_errors():
         (ax,) = found.plot().axes
         values = getattr(found, rmse)
         values = values() if callable(values) else values
-        drawn = [c.lines[0].get_xdata()[0] for c in ax.containers]
+        drawn = [x.get_xdata()[0] for x in ax.lines if not x.get_label().startswith("_")]
         np.testing.assert_allclose(drawn, values)
     columns = {"t": np.arange(250), "x": np.random.default_rng(0).normal(0, 1, 250).cumsum()}
     tuned = ft.tune(columns, "fixed", trials=4, folds=2)
     (ax,) = tuned.plot().axes
     assert ax.get_xlabel() == "RMS of innovations, held out"
-    drawn = [c.lines[0].get_xdata()[0] for c in ax.containers]
+    drawn = [x.get_xdata()[0] for x in ax.lines if not x.get_label().startswith("_")]
     np.testing.assert_allclose(drawn, [row.held_out for row in tuned.rows])
