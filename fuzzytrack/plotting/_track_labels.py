@@ -20,12 +20,14 @@ __all__ = ["label_ends"]
 _DISTANCES = (7.0, 12.0)
 _DIRECTIONS = ((1, 0), (1, 1), (1, -1), (-1, 0), (-1, 1), (-1, -1), (0, 1), (0, -1))
 _ANCHORS = {1: ("left", "bottom"), 0: ("center", "center"), -1: ("right", "top")}
+# Half the side of a mark, in points.
+_MARK = 4.0
 # Side of the squares in which the picture is divided to find free places, in pixels.
 _CELL = 3
 
 
 def label_ends(
-    ax: Axes, ids: Sequence[str], ends: Array, colors: Sequence[Any], lines: Array
+    ax: Axes, ids: Sequence[str], ends: Array, colors: Sequence[Any], lines: Array, marks: Array
 ) -> bool:
     """Write the identities of tracks at their ends.
 
@@ -40,6 +42,8 @@ def label_ends(
         Colors of the tracks.
     lines : ndarray, shape (n, 2)
         Points of all lines, which labels must not cover; a row of NaN between two lines.
+    marks : ndarray, shape (n, 2)
+        Where marks are, which they must not cover either.
 
     Returns
     -------
@@ -50,6 +54,7 @@ def label_ends(
     shared.figure_of(ax).draw_without_rendering()
     taken = _Taken(ax)
     taken.take_lines(lines)
+    taken.take_marks(marks)
     written: list[Text] = []
     for id, end, color in zip(ids, ends, colors, strict=True):
         text = _free_text(ax, taken, id, end, color)
@@ -110,6 +115,12 @@ class _Taken:
         inside &= (row < self._cells.shape[0]) & (column < self._cells.shape[1])
         self._cells[row[inside], column[inside]] = True
 
+    def take_marks(self, points: Array) -> None:
+        """Take the squares of marks."""
+        half = _MARK * shared.figure_of(self._ax).dpi / 72
+        for x, y in self._ax.transData.transform(points):
+            self.take(np.array([x - half, y - half, x + half, y + half]))
+
     def is_free(self, extents: Array) -> bool:
         """Whether a box lies inside of the axes, and nothing in it is taken."""
         x0, y0, x1, y1 = extents
@@ -123,4 +134,4 @@ class _Taken:
 
     def _squares(self, extents: Array) -> tuple[slice, slice]:
         x0, y0, x1, y1 = (extents - [*self._box.p0, *self._box.p0]) / _CELL
-        return slice(int(y0), int(y1) + 1), slice(int(x0), int(x1) + 1)
+        return slice(max(int(y0), 0), int(y1) + 1), slice(max(int(x0), 0), int(x1) + 1)

@@ -74,8 +74,10 @@ def plot_gains_over_time(
     if track is None:
         shown = ShownTracks.of(result, ids)
     else:
+        place = place_of(result, track)
+        # Anything else has no place.
         assert isinstance(result, TrackResult)
-        shown = ShownTracks.one(result, place_of(result, track))
+        shown = ShownTracks.one(result, place)
     names = axes_names or [f"x{k + 1}" for k in range(shown.alpha.shape[1])]
     figure, (panel,) = shared.panels("ax", ax, 1, columns=1, size=(6.4, 3.0))
     draw_gains(panel, shown, names, checked_intervals(maneuvers))

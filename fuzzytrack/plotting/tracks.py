@@ -395,7 +395,9 @@ class _Picture:
                 ends.append(known[-1])
                 colors.append(color)
                 ids.append(shown.ids[track])
-        return label_ends(ax, ids, np.array(ends), colors, np.concatenate(lines))
+        rows = np.concatenate(shown.ends())
+        marks = np.stack(on.of(shown.filtered, rows), axis=1)
+        return label_ends(ax, ids, np.array(ends), colors, np.concatenate(lines), marks)
 
 
 @dataclass(frozen=True, eq=False)

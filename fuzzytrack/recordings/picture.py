@@ -49,7 +49,10 @@ def picture_of(
     """
     from fuzzytrack.plotting import plot_tracks
 
-    ids = [track.id for track in recording.tracks]
+    names = [track.id for track in recording.tracks]
+    # By name, with A2 before A10; parts of a track stay in their order.
+    order = sorted(range(len(names)), key=lambda k: (len(names[k]), names[k]))
+    ids, results = [names[k] for k in order], [results[k] for k in order]
     if gains is None:
         some = any(np.isfinite(result.gains.alpha).any() for result in results)
         gains = len(set(ids)) <= _WITH_GAINS and some

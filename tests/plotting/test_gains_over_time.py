@@ -66,6 +66,8 @@ def test_one_track_of_a_batch_with_maneuvers(batch):
     assert [(p.get_x(), p.get_width()) for p in ax.patches] == [(3.0, 5.0)]
     with pytest.raises(ValueError, match="track: must be"):
         plot_gains_over_time(batch, track=(2, 2))
+    with pytest.raises(ValueError, match="result: must be a TrackResult, got list"):
+        plot_gains_over_time([batch], track=0)
 
 
 def test_no_gains_are_said():

@@ -101,3 +101,12 @@ def test_plots_beyond_the_gate_are_marked():
     np.testing.assert_array_equal(lines["plots not used"], [(x[20], 40.0)])
     assert np.isnan(lines["plots"][20]).all()
     assert len(lines["coasted"]) == 1
+
+
+def test_tracks_are_in_the_order_of_their_names():
+    t = np.repeat(np.arange(6.0), 3)
+    ids = np.tile(["A10", "B1", "A2"], 6)
+    tracked = ft.track({"id": ids, "t": t, "x": t, "y": 3 * t}, id="id", sigma=1.0)
+    legend = drawn(tracked.plot())[0].get_legend()
+    named = [text.get_text() for text in legend.get_texts()]
+    assert named == ["plots", "A2", "B1", "A10", "start", "end"]
