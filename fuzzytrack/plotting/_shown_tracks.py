@@ -126,9 +126,9 @@ class ShownTracks:
         """Rows of a track, without the gap at its end."""
         return slice(int(self.edges[track]), int(self.edges[track + 1]) - 1)
 
-    def ends(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """First and last row of each track that has a position."""
-        known = np.flatnonzero(np.isfinite(self.filtered).any(axis=1))
+    def ends(self, drawn: Mask) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """First and last row of each track, out of some rows; tracks with none are left out."""
+        known = np.flatnonzero(drawn)
         first = np.searchsorted(known, self.edges[:-1])
         after = np.searchsorted(known, self.edges[1:])
         some = after > first

@@ -300,7 +300,7 @@ class _Picture:
         elif not self.shown.marked:
             style |= {"linewidth": 1.6}
         if len(shown) == 1:
-            if len(shown.ends()[0]):
+            if on.known(shown.filtered).any():
                 ax.plot(*self._line(on, 0), label="filtered", **style)
             return
         lines = [self._line(on, track) for track in range(len(shown))]
@@ -341,7 +341,7 @@ class _Picture:
         if shown.rejected.any():
             self._draw_rejected(ax, on)
         smaller = {} if few else {"markersize": 3.0, "markeredgewidth": 0.8}
-        starts, ends = shown.ends()
+        starts, ends = shown.ends(on.known(shown.filtered))
         # Of a single plot, the end is its start.
         for name, rows in (("start", starts), ("end", ends[ends != starts])):
             if len(rows):
@@ -395,7 +395,7 @@ class _Picture:
                 ends.append(known[-1])
                 colors.append(color)
                 ids.append(shown.ids[track])
-        rows = np.concatenate(shown.ends())
+        rows = np.concatenate(shown.ends(on.known(shown.filtered)))
         marks = np.stack(on.of(shown.filtered, rows), axis=1)
         return label_ends(ax, ids, np.array(ends), colors, np.concatenate(lines), marks)
 
@@ -416,8 +416,13 @@ class _Coordinates:
         across = self.time if self.x is None else positions[:, self.x]
         return across[rows], positions[rows, self.y]
 
+    def known(self, positions: Array) -> Mask:
+        """Rows that have a place in the panel."""
+        across, up = self.of(positions)
+        return np.isfinite(across) & np.isfinite(up)
+
     def line(self, positions: Array) -> tuple[Array, Array]:
-        """The same for a line, interrupted where an angle passes from a full circle to 0."""
+        """Those of a line, interrupted where an angle passes from a full circle to 0."""
         across, up = self.of(positions)
         if self.period is None:
             return across, up

@@ -114,6 +114,15 @@ def test_start_and_end_are_marked(result):
     np.testing.assert_array_equal(lines(ax)["end"], result.filtered[-1:])
 
 
+def test_an_axis_that_starts_later_moves_the_start(tracker, flight):
+    t, _, z = flight
+    late = z.copy()
+    late[:4, 1] = np.nan
+    result = tracker.run(t, late)
+    _, ax = plot_track(result)
+    np.testing.assert_array_equal(lines(ax)["start"], result.filtered[4:5])
+
+
 def test_long_tracks_are_lines_with_faint_plots(tracker):
     t = np.arange(300.0)
     z = np.stack([t, np.sin(t / 20)], axis=1)
