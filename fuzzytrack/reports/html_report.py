@@ -176,8 +176,7 @@ def _picture(key: str, figure: Figure) -> str:
     data = base64.b64encode(drawing.getvalue()).decode("ascii")
     heading, reading = CAPTIONS[key]
     return (
-        f'<figure id="{key}">\n<div class="wide">'
-        f'<img alt="{escape(heading)}" src="data:image/{kind};base64,{data}"></div>'
+        f'<figure id="{key}">\n<img alt="{escape(heading)}" src="data:image/{kind};base64,{data}">'
         f"\n<figcaption><strong>{escape(heading)}.</strong> {escape(reading)}</figcaption>"
         "\n</figure>"
     )

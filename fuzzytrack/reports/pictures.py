@@ -18,6 +18,8 @@ __all__ = ["CAPTIONS", "LEVEL", "report_pictures"]
 
 #: Confidence level of all intervals.
 LEVEL = 0.95
+# Width in inches, for words that can be read where a picture is as wide as a phone.
+WIDTH = 5.6
 # Largest number of trackers in the picture of one run.
 SHOWN = 4
 # Part of the path that a close-up shows at most; a larger one is no close-up.
@@ -99,7 +101,7 @@ def report_pictures(results: Results) -> dict[str, Figure]:
 def _draw_comparison(results: Results, labels: Sequence[str]) -> Figure:
     from fuzzytrack.plotting import plot_comparison
 
-    figure = _figure(7.2, 2.2 + 0.6 * len(labels))
+    figure = _figure(2.2 + 0.56 * len(labels))
     quantities: tuple[Quantity, ...] = ("predicted", "filtered")
     for panel, quantity in zip(figure.subplots(2), quantities, strict=True):
         found, error = results.rmse(quantity), results.rmse_se(quantity)
@@ -117,7 +119,7 @@ def _draw_comparison(results: Results, labels: Sequence[str]) -> Figure:
 def _draw_error_over_time(results: Results, labels: Sequence[str]) -> Figure:
     from fuzzytrack.plotting import plot_error_over_time
 
-    figure = _figure(7.2, 8.0)
+    figure = _figure(7.2)
     panels = figure.subplots(2, sharex=True)
     quantities: tuple[Quantity, ...] = ("predicted", "filtered")
     for panel, quantity in zip(panels, quantities, strict=True):
@@ -140,7 +142,7 @@ def _draw_error_over_time(results: Results, labels: Sequence[str]) -> Figure:
 def _draw_error_distribution(results: Results, labels: Sequence[str]) -> Figure:
     from fuzzytrack.plotting import plot_error_distribution
 
-    figure = _figure(7.2, 5.0)
+    figure = _figure(4.6)
     scored = [away[results.scored] for away in results.predicted_distance]
     plot_error_distribution(dict(zip(labels, scored, strict=True)), ax=figure.subplots())
     return figure
@@ -154,17 +156,17 @@ def _draw_trajectories(results: Results, labels: Sequence[str]) -> Figure:
     n_axes = run.truth.shape[1]
     away = distance(run.predicted[:SHOWN] - run.truth)[:, results.first_scored :]
     if n_axes != 2 or np.isnan(away).all():
-        figure = _figure(7.2, 6.6 if n_axes == 2 else 2.4 + 2.4 * n_axes)
+        figure = _figure(6.0 if n_axes == 2 else 2.2 + 2.2 * n_axes)
         panels = figure.subplots(1 if n_axes == 2 else n_axes, sharex=True)
         plot_trajectories(run.time, run.truth, run.plots, tracks, ax=panels)
         return figure
     step = np.median(distance(np.diff(run.truth, axis=0)))
     reach = 3 * max(float(np.nanmax(away)), float(step)) or 1.0
     if reach > CLOSE * float(np.linalg.norm(np.ptp(run.truth, axis=0))) > 0:
-        figure = _figure(7.2, 6.6)
+        figure = _figure(6.0)
         plot_trajectories(run.time, run.truth, run.plots, tracks, ax=figure.subplots())
         return figure
-    figure = _figure(7.2, 11.0)
+    figure = _figure(10.0)
     whole, close = figure.subplots(2)
     plot_trajectories(run.time, run.truth, run.plots, tracks, ax=whole)
     # One legend serves both.
@@ -192,7 +194,7 @@ def _draw_gain_plane(results: Results, labels: Sequence[str]) -> Figure:
 
     run = results.sample
     gains = map(Gains, run.alpha, run.beta, run.gamma)
-    figure = _figure(7.2, 6.8)
+    figure = _figure(6.2)
     _, plane = plot_gain_plane(dict(zip(labels, gains, strict=True)), ax=figure.subplots())
     for panel in (plane, *plane.child_axes):
         for line in panel.lines:
@@ -208,7 +210,7 @@ def _draw_consistency(results: Results, labels: Sequence[str]) -> Figure:
 
     found = results.nis_consistency(LEVEL)
     assert found is not None
-    figure = _figure(7.2, 5.0)
+    figure = _figure(4.6)
     plot_consistency(
         results.time,
         dict(zip(labels, found.scan_mean, strict=True)),
@@ -219,11 +221,14 @@ def _draw_consistency(results: Results, labels: Sequence[str]) -> Figure:
     return figure
 
 
-def _figure(width: float, height: float) -> Figure:
+def _figure(height: float) -> Figure:
     """Figure that pyplot does not know: it opens no window and need not be closed."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width, height), layout="constrained")
+    figure = Figure(figsize=(WIDTH, height))
+    # Else the title of a panel is read as the label of the axis above it.
+    figure.set_layout_engine("constrained", h_pad=0.1)
+    return figure
 
 
 def _labels(names: Sequence[str]) -> list[str]:
