@@ -200,6 +200,8 @@ def _why(label: str, axis: str) -> str:
 
 # -------------------------------------------------------------------- pictures
 
+# The scenarios have the paper's spelling.
+_NOISES = {"white": "white", "coloured": "colored"}
 _DRAWN = ("M1", "M4", "M5", _SOFT)
 
 
@@ -224,7 +226,7 @@ def _methods(noise: str, errors: dict[str, Array]) -> Draw:
         from fuzzytrack.plotting.comparison import plot_comparison
 
         figure, axes = plot_comparison(curves, categories=METHODS, what="average RMSE")
-        axes.set_title(f"{noise} noise")
+        axes.set_title(f"{_NOISES[noise]} noise")
         return figure
 
     return draw

@@ -213,9 +213,8 @@ def _pictures(results: Results, noise: dict[str, tuple[Array, Array]]) -> dict[s
         assert results.velocity is not None
         error = results.velocity[results.names.index(label)].mean(axis=0)
         velocity[label] = true + error[:, 0]
-    # After the trackers, so that these have the same colors in all pictures.
     velocity["true"] = true
-    track = {"true": position[:, 0] / 1e3, "plots of one run": results.sample.plots[:, 0] / 1e3}
+    track = {"true": position[:, 0] / 1e3, "plots": results.sample.plots[:, 0] / 1e3}
     sigma_v = {label: np.median(found, axis=1) for label, (found, _) in noise.items()}
     return {
         "fig1-trajectory": _drawing(time, track, "position (km)"),

@@ -11,7 +11,14 @@ from matplotlib import colormaps
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import (
+    FixedLocator,
+    Formatter,
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+)
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
@@ -166,11 +173,18 @@ class _Decades(LogLocator):
         return super().tick_values(vmin, vmax)
 
 
-def _decade(value: float, _: object) -> str:
-    """Plain number, as long as it is short."""
-    if 1e-4 <= value < 1e6:
-        return f"{value:.10g}"
-    return rf"$10^{{{round(np.log10(value))}}}$" if value > 0 else ""
+class _Decade(Formatter):
+    """Plain numbers, if all on the axis are short; else powers of ten."""
+
+    def __call__(self, value: float, pos: int | None = None) -> str:
+        assert self.axis is not None
+        low, high = sorted(self.axis.get_view_interval())
+        if low >= 0.9e-4 and high < 1e6:
+            return f"{value:.10g}"
+        # With room for the rounding error of a logarithm.
+        exponent = int(np.floor(np.log10(value) + 1e-9)) if value > 0 else 0
+        digit = value / 10.0**exponent
+        return rf"${'' if abs(digit - 1) < 1e-9 else f'{digit:.3g}·'}10^{{{exponent}}}$"
 
 
 def log_axis(ax: Axes, *which: str) -> None:
@@ -179,7 +193,7 @@ def log_axis(ax: Axes, *which: str) -> None:
         getattr(ax, f"set_{name}scale")("log")
         axis = getattr(ax, f"{name}axis")
         axis.set_major_locator(_Decades())
-        axis.set_major_formatter(FuncFormatter(_decade))
+        axis.set_major_formatter(_Decade())
         axis.set_minor_formatter(NullFormatter())
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,8 +11,14 @@ from numpy.typing import ArrayLike
 
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.plotting._track_styles import STYLES
 
 __all__ = ["plot_curves"]
+
+_REFERENCES: dict[str, dict[str, Any]] = {
+    "true": STYLES["true"],
+    "plots": {"color": shared.GRAY, "linewidth": 1.2, "zorder": 1.5},
+}
 
 
 def plot_curves(
@@ -33,7 +40,8 @@ def plot_curves(
     x : array_like, shape (n,)
         Common abscissa.
     curves : mapping of str to array_like, shape (n,)
-        By label; at least one.
+        By label; at least one. Those with the labels ``true`` and ``plots`` look as in pictures of
+        tracks.
     xlabel, ylabel : str
         Quantity and unit of the axes.
     title : str
@@ -61,14 +69,14 @@ def plot_curves(
     figure, (axes,) = shared.panels(
         "ax", None if ax is None else [ax], 1, columns=1, size=(6.8, 4.2)
     )
-    for number, (label, values) in enumerate(curves.items()):
-        axes.plot(
-            abscissa,
-            values,
-            label=label,
-            color=shared.COLORS[number % len(shared.COLORS)],
-            linestyle=shared.STYLES[number % len(shared.STYLES)],
-        )
+    trackers = [label for label in curves if label not in _REFERENCES]
+    for label, values in curves.items():
+        number = 0 if label in _REFERENCES else trackers.index(label)
+        own = {
+            "color": shared.COLORS[number % len(shared.COLORS)],
+            "linestyle": shared.STYLES[number % len(shared.STYLES)],
+        }
+        axes.plot(abscissa, values, label=label, **_REFERENCES.get(label, own))
     for number, (label, (at, value)) in enumerate((marks or {}).items()):
         marker = shared.MARKERS[number % len(shared.MARKERS)]
         axes.plot(at, value, marker, color=shared.INK, markerfacecolor="none", label=label)

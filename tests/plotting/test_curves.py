@@ -33,6 +33,17 @@ def test_curves_marks_and_words_are_drawn():
     assert len({line.get_color() for line in (one, other)}) == 2
 
 
+def test_truth_and_plots_look_as_in_pictures_of_tracks():
+    curves = {"true": X, "one": X, "plots": X, "other": X}
+    _, ax = plot_curves(X, curves, xlabel="x", ylabel="y")
+    _, alone = plot_curves(X, {"one": X, "other": X}, xlabel="x", ylabel="y")
+    looks = {line.get_label(): (line.get_color(), line.get_linestyle()) for line in ax.lines}
+    assert looks["true"] == ("black", "-")
+    assert looks["plots"][0] == "0.55"
+    for line in alone.lines:
+        assert looks[line.get_label()] == (line.get_color(), line.get_linestyle())
+
+
 def test_given_axes_are_used():
     given = plt.figure().subplots()
     figure, ax = plot_curves(X, {"one": X}, xlabel="", ylabel="", ax=given)
