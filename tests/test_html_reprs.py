@@ -15,6 +15,7 @@ from fuzzytrack.html_reprs import Cell, as_text, block, curves, facts, paragraph
 from fuzzytrack.schedulers.reachable_gains import certify
 from fuzzytrack.testbed.comparison import compare
 from fuzzytrack.testbed.montecarlo import monte_carlo
+from fuzzytrack.testbed.recorded_comparison import compare_recorded
 
 EMPTY = {"img", "line", "polyline"}
 
@@ -190,7 +191,8 @@ def test_results_of_trackers_show_their_errors():
     truth = np.stack([3 * t, np.sin(t)], axis=1)
     found = compare(["fixed:alpha=0.5:beta=0.2", "stiffness-damping"], t, truth, 2.0, 5, 0)
     head, *rows, plots = rows_of(found._repr_html_())
-    assert head[-1] == "against fixed:alpha=0.5:beta=0.2"
+    assert head[-2:] == ["vs fixed:alpha=0.5:beta=0.2", ""]
+    assert [row[4] for row in rows] == found.marks
     assert [row[0] for row in rows] == list(found.names)
     assert rows[1][3] == f"{100 * found.predicted_change[1]:+.1f} %"
     assert plots[2] == as_text(found.measured_rmse)
@@ -199,6 +201,24 @@ def test_results_of_trackers_show_their_errors():
     assert head[:3] == ["tracker", "predicted RMSE (m)", "filtered RMSE (m)"]
     assert rows[0][2].startswith(f"{results.rmse('filtered')[0]:.4g}"[:3])
     assert len(plots) == len(head)
+
+
+def test_trackers_on_recorded_plots_show_their_innovations_or_errors():
+    rng = np.random.default_rng(0)
+    t, x = np.arange(120), 2.0 * np.arange(120)
+    columns = {"t": t, "x": x + rng.normal(0, 3, 120), "u": x}
+    names = ["fixed:alpha=0.5:beta=0.2", "stiffness-damping"]
+    found = compare_recorded(names, columns, axes=["x"])
+    head, *rows, before = rows_of(found._repr_html_())
+    assert head == ["RMS of innovations", "", f"vs {names[0]} (95 %)", ""]
+    assert [row[1] for row in rows] == [as_text(score.rms) for score in found.scores]
+    assert rows[1][2] == found.scores[1].change.text
+    assert before[:2] == ["the plot before", as_text(found.before)]
+    found = compare_recorded(names, columns, axes=["x"], truth="u")
+    head, *rows, plots = rows_of(found._repr_html_())
+    assert head[:3] == ["RMSE of position", "predicted", "filtered"]
+    assert [row[2] for row in rows] == [as_text(score.true.filtered) for score in found.scores]
+    assert plots[2] == as_text(found.measured_rmse)
 
 
 def test_a_run_shows_what_it_kept():

@@ -27,8 +27,7 @@ def print_recorded(found: RecordedComparison, decoder: PlotDecoder) -> None:
     if found.lag is not None:
         paragraph(_lag_sentence(found))
     say()
-    with_truth = not math.isnan(found.measured_rmse)
-    (_print_errors if with_truth else _print_innovations)(found, unit)
+    (_print_errors if found.has_truth else _print_innovations)(found, unit)
     say()
     _print_consistency(found)
 
@@ -50,17 +49,8 @@ def _lag_sentence(found: RecordedComparison) -> str:
     return f"clock: the plots are {lag} s behind the truth (fitted), which was taken off."
 
 
-def _interval(change: RmsChange | None) -> str:
-    if change is None:
-        return ""
-    middle, low, high = (_percent(each) for each in (change.change, change.low, change.high))
-    return f"{middle} %" if math.isnan(change.low) else f"{middle} % ({low} to {high})"
-
-
-def _percent(share: float) -> str:
-    """Percent with its sign; large ones without digits that mean nothing."""
-    percent = 100 * share
-    return f"{percent:+.1f}" if abs(percent) < 99.95 else f"{percent:+.3g}"
+def _text(change: RmsChange | None) -> str:
+    return "" if change is None else change.text
 
 
 # -------------------------------------------------------------------- accuracy
@@ -69,7 +59,7 @@ def _percent(share: float) -> str:
 def _print_innovations(found: RecordedComparison, unit: str) -> None:
     """Table where the truth is not known."""
     rows = [
-        [score.name, show(score.rms), _interval(score.change), mark]
+        [score.name, show(score.rms), _text(score.change), mark]
         for score, mark in zip(found.scores, found.marks, strict=True)
     ]
     rows += [[], ["the plot before", show(found.before), "", ""]]
@@ -96,7 +86,7 @@ def _print_errors(found: RecordedComparison, unit: str) -> None:
     for score, mark in zip(found.scores, found.marks, strict=True):
         assert score.true is not None
         errors = score.true.predicted, score.true.filtered
-        rows.append([score.name, *map(show, errors), _interval(score.true.change), mark])
+        rows.append([score.name, *map(show, errors), _text(score.true.change), mark])
     rows += [[], ["the plots themselves", "", show(found.measured_rmse), "", ""]]
     print_table(
         [f"RMSE of position ({unit})", "predicted", "filtered", "vs first (95 %)", ""],

@@ -47,6 +47,18 @@ class RmsChange:
     def __repr__(self) -> str:
         return summary(self, "change", "low", "high", "blocks")
 
+    @property
+    def text(self) -> str:
+        """The change in percent, with its interval if it has one."""
+        middle, low, high = map(_percent, (self.change, self.low, self.high))
+        return f"{middle} %" if math.isnan(self.low) else f"{middle} % ({low} to {high})"
+
+
+def _percent(share: float) -> str:
+    """Percent with its sign; large ones without digits that mean nothing."""
+    percent = 100 * share
+    return f"{percent:+.1f}" if abs(percent) < 99.95 else f"{percent:+.3g}"
+
 
 def rms_change(
     first: ArrayLike,

@@ -81,11 +81,11 @@ class Comparison:
         changes = ["", *(f"{100 * change:+.1f} %" for change in self.predicted_change[1:])]
         numbers = map(as_text, self.predicted_rmse, self.predicted_error)
         filtered = map(as_text, self.filtered_rmse, self.filtered_error)
-        rows = list(zip(self.names, numbers, filtered, changes, strict=True))
-        rows.append(("the plots themselves", "", as_text(self.measured_rmse), ""))
-        heads = ["RMSE of position (m)", "predicted", "filtered", f"against {self.names[0]}"]
+        rows = list(zip(self.names, numbers, filtered, changes, self.marks, strict=True))
+        rows.append(("the plots themselves", "", as_text(self.measured_rmse), "", ""))
+        heads = ["RMSE of position (m)", "predicted", "filtered", f"vs {self.names[0]}", ""]
         told = f"{counted(self.runs, 'run')}, noise {self.sigma:g} m on each axis, seed {self.seed}"
-        best = int(np.argmin(self.predicted_rmse))
+        best = best_of(self.predicted_rmse)
         return block("Trackers on the same noise", table(heads, rows, best=best), paragraph(told))
 
     @property

@@ -6,14 +6,16 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
+from fuzzytrack.html_reprs import as_text, block, paragraph, table
 from fuzzytrack.io.reading import Reading
+from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.clock_lag import ClockLag, fitted_lag
 from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.tracking import suited
@@ -33,6 +35,9 @@ from fuzzytrack.testbed.marks import best_of, marks_of
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = [
     "RecordedComparison",
@@ -148,6 +153,44 @@ class RecordedComparison:
     def __repr__(self) -> str:
         return summary(self, "names", "tracks", "scored")
 
+    def plot(self) -> Figure:
+        """Picture of the errors of prediction, or of the RMS of innovations without truth."""
+        from fuzzytrack.plotting import plot_comparison
+
+        values = dict(zip(self.names, self.errors, strict=True))
+        if self.has_truth:
+            return plot_comparison(values, reference={"plots": self.measured_rmse}, unit="")[0]
+        return plot_comparison(
+            values, reference={"the plot before": self.before}, what="RMS of innovations", unit=""
+        )[0]
+
+    def _repr_html_(self) -> str:
+        """Table of errors, or of innovations without truth, for notebooks."""
+        told = f"{counted(self.tracks, 'track')}, {self.scored} of {self.plots} plots scored"
+        rows = []
+        for score, error, mark in zip(self.scores, self.errors, self.marks, strict=True):
+            change = score.change if score.true is None else score.true.change
+            filtered = [] if score.true is None else [as_text(score.true.filtered)]
+            rows.append(
+                [score.name, as_text(error), *filtered, "" if change is None else change.text, mark]
+            )
+        if self.has_truth:
+            what = ["RMSE of position", "predicted", "filtered"]
+            rows.append(["the plots themselves", "", as_text(self.measured_rmse), "", ""])
+        else:
+            what = ["RMS of innovations", ""]
+            rows.append(["the plot before", as_text(self.before), "", ""])
+        heads = [*what, f"vs {self.names[0]} (95 %)", ""]
+        notes = (paragraph(note, note=True) for note in self.notes)
+        best = best_of(self.errors)
+        title = "Trackers on recorded plots"
+        return block(title, table(heads, rows, best=best), paragraph(told), *notes)
+
+    @property
+    def has_truth(self) -> bool:
+        """Whether the truth is known."""
+        return not math.isnan(self.measured_rmse)
+
     @property
     def names(self) -> tuple[str, ...]:
         """The trackers."""
@@ -171,7 +214,7 @@ class RecordedComparison:
         the plots are. Without, that cannot be known; it is worse for certain if its predictions are
         farther from the next plot than the plot before is.
         """
-        if math.isnan(self.measured_rmse):
+        if not self.has_truth:
             return marks_of(self.errors, self.errors, self.before)
         filtered = [score.true.filtered for score in self.scores if score.true is not None]
         return marks_of(self.errors, filtered, self.measured_rmse)

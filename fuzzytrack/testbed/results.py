@@ -15,6 +15,7 @@ from fuzzytrack.html_reprs import as_text, block, paragraph, table
 from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 from fuzzytrack.testbed import metrics, results_as
+from fuzzytrack.testbed.marks import best_of
 from fuzzytrack.testbed.metrics import Consistency, PairedDifference, Peak
 
 if TYPE_CHECKING:
@@ -134,11 +135,10 @@ class Results:
         rows = list(zip(self.names, *columns.values(), strict=True))
         plots = ["the plots themselves", "", as_text(self.measured_rmse)]
         rows.append((*plots, *[""] * (len(columns) - 2)))
-        errors = np.nan_to_num(self.rmse(), nan=np.inf)
         told = f"{counted(self.runs, 'run')} of {counted(len(self.time), 'scan')}, seed {self.seed}"
         return block(
             self.scenario,
-            table(["tracker", *columns], rows, best=int(np.argmin(errors))),
+            table(["tracker", *columns], rows, best=best_of(self.rmse())),
             paragraph(told),
         )
 

@@ -1,4 +1,4 @@
-"""Pictures that values draw of themselves, and those of certificates and of errors of trackers."""
+"""Pictures that values draw of themselves, and those of certificates."""
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ from fuzzytrack.gains.certificate import error_matrix
 from fuzzytrack.plotting import plot_certificate, plot_memberships
 from fuzzytrack.testbed.comparison import compare
 from fuzzytrack.testbed.montecarlo import monte_carlo
+from fuzzytrack.testbed.recorded_comparison import compare_recorded
 
 FIXED = "fixed:alpha=0.5:beta=0.2"
 
@@ -75,21 +76,28 @@ def test_values_draw_themselves():
     assert result.plot(truth=result.measured).axes[0].get_xlabel().startswith("x")
 
 
+def points(ax):
+    """Numbers of the trackers, from above."""
+    drawn = [each for each in ax.lines if each.get_marker() not in (None, "None", "")]
+    return [x for each in drawn for x in np.asarray(each.get_xdata(), dtype=float).tolist()]
+
+
 def test_results_draw_their_errors():
     t = np.arange(20.0)
     truth = np.stack([t, t**2], axis=1)
-    for found, rmse in (
-        (compare([FIXED, "chan-style"], t, truth, 1.0, 3, 0), "predicted_rmse"),
-        (monte_carlo("llinas-m2", [FIXED, "chan-style"], runs=3, seed=0), "rmse"),
-    ):
-        (ax,) = found.plot().axes
-        values = getattr(found, rmse)
-        values = values() if callable(values) else values
-        drawn = [x.get_xdata()[0] for x in ax.lines if not x.get_label().startswith("_")]
-        np.testing.assert_allclose(drawn, values)
+    found = compare([FIXED, "chan-style"], t, truth, 1.0, 3, 0)
+    (ax,) = found.plot().axes
+    np.testing.assert_allclose(points(ax), found.predicted_rmse)
+    results = monte_carlo("llinas-m2", [FIXED, "chan-style"], runs=3, seed=0)
+    (ax,) = results.plot().axes
+    np.testing.assert_allclose(points(ax), results.rmse())
     columns = {"t": np.arange(250), "x": np.random.default_rng(0).normal(0, 1, 250).cumsum()}
     tuned = ft.tune(columns, "fixed", trials=4, folds=2)
     (ax,) = tuned.plot().axes
     assert ax.get_xlabel() == "RMS of innovations, held out"
-    drawn = [x.get_xdata()[0] for x in ax.lines if not x.get_label().startswith("_")]
-    np.testing.assert_allclose(drawn, [row.held_out for row in tuned.rows])
+    np.testing.assert_allclose(points(ax), [row.held_out for row in tuned.rows])
+    for truth_of, label in (({}, "RMS of innovations"), ({"truth": "x"}, "RMSE of prediction")):
+        recorded = compare_recorded([FIXED, "chan-style"], columns, sigma=0.1, **truth_of)
+        (ax,) = recorded.plot().axes
+        assert ax.get_xlabel() == label
+        np.testing.assert_allclose(points(ax), recorded.errors)
