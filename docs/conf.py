@@ -29,6 +29,7 @@ extensions = [
     "sphinx.ext.viewcode",
     "mathml",
     "pictures",
+    "cli_reference",
     "numpydoc",
     "myst_parser",
     "sphinx_design",

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import fuzzytrack as ft
-from fuzzytrack.cli.app import COMMANDS, app, load_command
+from fuzzytrack.cli.app import COMMANDS, app
 from fuzzytrack.io.formats import write_table
 from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
@@ -115,19 +115,6 @@ def test_commands_on_pages_about_files_run(page, number, tmp_path, monkeypatch):
         found = [line.split() for line in result.output.splitlines()]
         for line in expected:
             assert line.split() in found, f"{words}\n{line}\nis not in\n{result.output}"
-
-
-@pytest.mark.parametrize(
-    "name", ["demo", "sample", "track", "compare", "testbed", "tune", "simulate"]
-)
-def test_the_page_of_commands_names_every_option(name):
-    page = (ROOT / "docs" / "cli.md").read_text()
-    section = re.search(rf"^## [^\n]*\b{name}\n(.*?)^## ", page + "\n## ", flags=re.M | re.S)
-    if section is None:
-        section = re.search(rf"^## {name}\b(.*?)^## ", page + "\n## ", flags=re.M | re.S)
-    options = [parameter.opts for parameter in load_command(name).params]
-    named = set(re.findall(r"(?<![\w-])--?\w[\w-]*", section.group(1)))
-    assert [names for names in options if names[0].startswith("-") and not named & {*names}] == []
 
 
 def test_the_page_of_installation_has_every_extra():

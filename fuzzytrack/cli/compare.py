@@ -53,7 +53,7 @@ def compare(
         float | None,
         typer.Option(
             metavar="SIGMA",
-            help="Take FILE as the truth, and simulate plots with this standard deviation.",
+            help="Take FILE as the truth, and simulate plots with this standard deviation, m.",
         ),
     ] = None,
     trackers: Annotated[

@@ -24,7 +24,7 @@ def _option(metavar: str, help: str, *names: str) -> Any:
 
 def plot_reading(
     time: Annotated[
-        _Text, _option("COL", "Column of time, or DATE,TIME. [default: t, time, timestamp…]")
+        _Text, _option("COL", "Column of time (s, dates), or DATE,TIME. [default: t, time…]")
     ] = None,
     time_unit: Annotated[
         _Text, _option("s|ms|us|ns", "Unit of numeric times. [default: by name or size]")
@@ -36,7 +36,7 @@ def plot_reading(
         _Text, _option("COL", "Column that identifies the track. [default: one track]")
     ] = None,
     axes: Annotated[
-        _Text, _option("COL,COL", "Columns of position. [default: x,y,z or x_m,y_m,z_m]")
+        _Text, _option("COL,COL", "Columns of position, m. [default: x,y,z or x_m,y_m,z_m]")
     ] = None,
     polar: Annotated[
         _Text, _option("RANGE,AZIMUTH[,ELEVATION]", "Columns of polar plots; angles in degrees.")
@@ -55,7 +55,7 @@ def plot_reading(
         _Text, _option("LAT,LON[,ALT]", "Place of the sensor, in degrees and meters.")
     ] = None,
     own_ship: Annotated[
-        _Text, _option("COL,COL", "Columns of the position of a moving sensor.")
+        _Text, _option("COL,COL", "Columns of the position of a moving sensor, m.")
     ] = None,
     own_heading: Annotated[
         _Text, _option("COL", "Column of its heading (degrees), for relative azimuths.")
@@ -81,7 +81,7 @@ def plot_reading(
         bool, typer.Option("--stale", help="Take a position that repeats as a missed plot.")
     ] = False,
     least_step: Annotated[
-        _Text, _option("S", "Shortest time to start a track with. [default: from the plots]")
+        _Text, _option("S", "Shortest time to start a track with, s. [default: by the plots]")
     ] = None,
     max_gap: Annotated[
         str, _option("S|auto|none", "A longer time without a plot ends the track, in seconds.")
