@@ -56,6 +56,7 @@ def test_every_option_of_every_command_is_described(reference, sections):
         ("track", ["`--plugin` `FILE.py`", ": Load plug-ins from a script; may be repeated."]),
         ("track", ["`--valid` `COL=LOW:HIGH`", ": .* missed plots. May be repeated."]),
         ("surface", ["`--points` `N`", ": Points on each axis.* From 2 to 1001. Default: `101`."]),
+        ("surface", ["`--even`", ": Write `--csv` without the corners of the sets."]),
         ("gains", ["`--alpha` `A`", ": Position gain. Required."]),
         ("demo", ["`-o`, `--output` `DIR`", ": .*Default: `demo`."]),
         ("demo", ["`--runs` `N`", ": Monte Carlo runs. At least 1. Default: `100`."]),

@@ -8,7 +8,8 @@ import re
 import sys
 from pathlib import Path
 
-#: What a default in the text of an option looks like: ``[default: one track]``, ``[auto: 20]``.
+#: Options in a text, and a default at its end: ``[default: one track]``, ``[auto: 20]``.
+OPTION = re.compile(r"(?<![\w`-])--?[a-z][\w-]*(?!`)")
 DEFAULT = re.compile(r"\s*\[(default|auto): ([^\]]*)\]")
 
 
@@ -30,7 +31,7 @@ def section(path, command):
     lines = [
         f"{'##' if path.count(' ') < 2 else '###'} {path}",
         "",
-        *("\n\n".join(" ".join(part.split()) for part in (command.help or "").split("\n\n")), ""),
+        *(marked(" ".join(part.split())) + "\n" for part in (command.help or "").split("\n\n")),
         *("```text", f"{path} {' '.join(['[OPTIONS]' * bool(options), *words]).strip()}", "```"),
         "",
     ]
@@ -39,6 +40,11 @@ def section(path, command):
     for parameter in (*arguments, *options):
         lines += [f"{spelled(parameter)}", f": {told(parameter)}", ""]
     return "\n".join(lines)
+
+
+def marked(text):
+    """Text with its options as code, so that their hyphens stay."""
+    return OPTION.sub(r"`\g<0>`", text)
 
 
 def spelled(parameter):
@@ -57,7 +63,7 @@ def spelled(parameter):
 def told(parameter):
     """What an option does, what it may be, and what it is unless given."""
     help = parameter.help or ""
-    text = DEFAULT.sub("", help).rstrip(".") + "."
+    text = marked(DEFAULT.sub("", help).rstrip(".") + ".")
     low, high = (getattr(parameter, name, None) for name in ("min", "max"))
     if low is not None and high is not None:
         text += f" From {low:g} to {high:g}."
@@ -69,7 +75,7 @@ def told(parameter):
         return text if parameter.param_type_name == "argument" else f"{text} Required."
     written = DEFAULT.findall(help)
     if written and written[0][0] == "default":
-        return f"{text} Default: {written[0][1]}."
+        return f"{text} Default: {marked(written[0][1])}."
     if parameter.default is None or parameter.default is False:
         return text
     default = parameter.default
