@@ -19,6 +19,8 @@ Intervals = Sequence[tuple[float, float]]
 _PART = 0.2
 # Accelerations below this part of a maneuver that would use up the whole path are rounding errors.
 _ROUNDING = 1e-6
+# Part of the time beyond which a target maneuvers always: shades would say nothing.
+_ALWAYS = 0.95
 # With more intervals, the truth has noise of its own.
 _MOST = 12
 
@@ -36,8 +38,9 @@ def maneuvers_of(time: Array, truth: Array) -> list[tuple[float, float]]:
     Returns
     -------
     list of (float, float)
-        First and last time of each (s), to one plot. None where the path is straight, or where
-        there would be more than 12, as in a recorded truth with noise of its own.
+        First and last time of each (s), to one plot. None where the path is straight, where the
+        target maneuvers always, or where there would be more than 12, as in a recorded truth with
+        noise of its own.
     """
     from scipy.ndimage import binary_closing
 
@@ -62,6 +65,8 @@ def maneuvers_of(time: Array, truth: Array) -> list[tuple[float, float]]:
     # Gaps of one or two plots are closed.
     edges = np.flatnonzero(np.diff(binary_closing(busy, np.ones(3)).astype(int)))
     begins, ends = time[edges[::2]], time[edges[1::2] + 1]
+    if (ends - begins).sum() > _ALWAYS * whole:
+        return []
     return [(float(begin), float(end)) for begin, end in zip(begins, ends, strict=True)]
 
 

@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import finite
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.plotting._maneuvers import Intervals, checked_intervals, shade_maneuvers
 from fuzzytrack.plotting._track_styles import STYLES as TRACK_STYLES
+from fuzzytrack.plotting._tracker_lines import scale_axis, tracker_look
 
 __all__ = [
     "plot_consistency",
@@ -24,8 +26,6 @@ __all__ = [
 
 Unit = Literal["m", "km"]
 
-# Curves that differ by more than this factor are drawn on a logarithmic scale.
-APART = 30.0
 # Number of points of a curve of a distribution; more would not be visible.
 POINTS = 400
 # Share of the errors of the worst tracker that a distribution shows; outliers would squeeze the
@@ -44,6 +44,7 @@ def plot_error_over_time(
     *,
     measured: ArrayLike | None = None,
     scored_from: float | None = None,
+    maneuvers: Intervals = (),
     what: str = "prediction error, RMS over runs",
     unit: str = "m",
     ax: Axes | None = None,
@@ -62,6 +63,8 @@ def plot_error_over_time(
         Error of the plots themselves.
     scored_from : float, optional
         Time of the first scan that counts (s); what is before it is shaded.
+    maneuvers : sequence of (float, float)
+        First and last times of maneuvers of the target (s), to be shaded.
     what, unit : str
         Error and its unit, for the label.
     ax : Axes, optional
@@ -75,7 +78,8 @@ def plot_error_over_time(
     Raises
     ------
     ValueError
-        If there is no tracker, shapes do not fit, or a band has the label of no tracker.
+        If there is no tracker, shapes do not fit, a band has the label of no tracker, or
+        `maneuvers` are no pairs of times.
 
     Notes
     -----
@@ -89,17 +93,19 @@ def plot_error_over_time(
             raise ValueError(f"bands: unknown {label!r}; one of {', '.join(curves)}")
         limits[label] = [_curve(f"bands: {label!r}", side, len(steps)) for side in pair]
     plots = None if measured is None else _curve("measured", measured, len(steps))
+    shaded = checked_intervals(maneuvers)
     figure, (plane,) = shared.panels("ax", ax, 1, columns=1, size=(6.4, 4.2))
     for number, (label, curve) in enumerate(curves.items()):
-        plane.plot(steps, curve, label=label, linewidth=1.6, **_look(number))
+        look = tracker_look(number)
+        plane.plot(steps, curve, label=label, linewidth=1.6, **look)
         if label in limits:
-            color = _look(number)["color"]
-            plane.fill_between(steps, *limits[label], color=color, alpha=0.2, linewidth=0)
+            plane.fill_between(steps, *limits[label], color=look["color"], alpha=0.2, linewidth=0)
     if plots is not None:
         plane.plot(steps, plots, color=shared.GRAY, linewidth=1.2, label="plots", zorder=1)
-    _scale(plane, "y", [*curves.values()])
+    scale_axis(plane, "y", [*curves.values()])
     if scored_from is not None and scored_from > steps[0]:
         plane.axvspan(steps[0], scored_from, color="0.94", linewidth=0, label="not scored")
+    shade_maneuvers(plane, shaded)
     _label_time(plane, steps, f"{what} ({unit})" if unit else what)
     return figure, plane
 
@@ -203,7 +209,7 @@ class _Run:
         sparse = len(self.time) <= DENSE
         for number, (label, track) in enumerate(self.tracks.items()):
             marker = shared.MARKERS[number % len(shared.MARKERS)]
-            look: dict[str, Any] = {"marker": marker, "markersize": 4.5, **_look(number)}
+            look: dict[str, Any] = {"marker": marker, "markersize": 4.5, **tracker_look(number)}
             seen = np.flatnonzero(~self.missed).tolist() if sparse else []
             ax.plot(*on(track), linewidth=1.2, markevery=seen, label=label, zorder=3, **look)
             ax.plot(
@@ -279,7 +285,7 @@ def plot_error_distribution(
             drawstyle="steps-post",
             linewidth=1.6,
             label=label,
-            **_look(number),
+            **tracker_look(number),
         )
         if count:
             plane.plot(
@@ -289,12 +295,12 @@ def plot_error_distribution(
                 marker=shared.MARKERS[number % len(shared.MARKERS)],
                 markersize=6.5,
                 markeredgecolor="white",
-                color=_look(number)["color"],
+                color=tracker_look(number)["color"],
                 zorder=4,
             )
     for share in shares:
         plane.axhline(100.0 * share, color="0.7", linewidth=0.9, linestyle=(0, (4, 3)), zorder=1)
-    _scale(plane, "x", [*samples.values()])
+    scale_axis(plane, "x", [*samples.values()])
     largest = [np.quantile(sample, SHOWN) for sample in samples.values() if len(sample)]
     if largest and max(largest) > 0:
         plane.set_xlim(right=1.05 * max(largest))
@@ -361,18 +367,10 @@ def plot_consistency(
     if expected is not None:
         plane.axhline(expected, color=shared.GRAY, linewidth=1.0, zorder=1)
     for number, (label, curve) in enumerate(curves.items()):
-        plane.plot(steps, curve, label=label, linewidth=1.4, **_look(number))
-    _scale(plane, "y", [*curves.values(), *limits])
+        plane.plot(steps, curve, label=label, linewidth=1.4, **tracker_look(number))
+    scale_axis(plane, "y", [*curves.values(), *limits])
     _label_time(plane, steps, what)
     return figure, plane
-
-
-def _look(number: int) -> dict[str, Any]:
-    """Color and dashes of a tracker, by its place: the same in every picture."""
-    return {
-        "color": shared.COLORS[number % len(shared.COLORS)],
-        "linestyle": shared.STYLES[number % len(shared.STYLES)],
-    }
 
 
 def _label_time(ax: Axes, time: Array, ylabel: str) -> None:
@@ -380,16 +378,6 @@ def _label_time(ax: Axes, time: Array, ylabel: str) -> None:
     ax.margins(x=0.01)
     shared.finish(ax)
     shared.legend_below(ax)
-
-
-def _scale(ax: Axes, which: str, curves: Sequence[Array]) -> None:
-    """Linear from zero; logarithmic where the medians of curves are far apart."""
-    middles = [float(np.median(curve[curve > 0])) for curve in curves if (curve > 0).any()]
-    if middles and max(middles) > APART * min(middles):
-        shared.log_axis(ax, which)
-    else:
-        high = getattr(ax.dataLim, f"{which}1")
-        getattr(ax, f"set_{which}lim")(0.0, 1.05 * high if middles else None)
 
 
 def _times(time: ArrayLike) -> Array:

@@ -27,16 +27,18 @@ from fuzzytrack.plotting._shown_tracks import (
     place_of,
     true_positions,
 )
+from fuzzytrack.plotting._tracker_lines import (
+    draw_rest,
+    scale_axis,
+    tracker_look,
+    with_a_line,
+)
 from fuzzytrack.trackers.result import TrackResult
 
 __all__ = ["plot_errors"]
 
-# Trackers that have a line each; others are a band.
-_LINES = 4
 # Part of a track over which errors are smoothed where they are too ragged.
 _SMOOTHED = 1 / 30
-# Errors whose medians differ by more than this factor are drawn on a logarithmic scale.
-_APART = 30.0
 
 
 def plot_errors(
@@ -54,8 +56,8 @@ def plot_errors(
     Parameters
     ----------
     results : TrackResult, or mapping of str to TrackResult
-        With labels for the legend. The first four are lines; of further ones the median and the
-        quartiles are a band.
+        With labels for the legend. Of more than six, the first and the four with the smallest
+        median errors are lines; of the others the median and the quartiles are a band.
     truth : array_like
         True positions, shaped as the plots of a track, or of the batch.
     unit : str
@@ -65,7 +67,7 @@ def plot_errors(
     maneuvers : sequence of (float, float), or "auto"
         First and last times of maneuvers (s). "auto" takes the times at which the truth
         accelerates, if it is the same for all tracks: with more than a fifth of its largest
-        acceleration. No maneuver is found in a truth with noise of its own.
+        acceleration. None is found where it always does, or in a truth with noise of its own.
     smooth : int, optional
         Number of plots over which errors are averaged (root mean square), an odd one; 1 is not at
         all. Unless given, about a thirtieth of all where lines would be too ragged to be read.
@@ -138,23 +140,16 @@ def _draw(
     count = smooth or _suitable(lines)
     curves = [(label, time / second, running_rms(e, count)) for label, time, e in lines]
     same = all(np.array_equal(time, curves[0][1]) for _, time, _ in curves)
-    # One more than can be drawn is no band yet.
-    shown = len(curves) if len(curves) <= _LINES + 1 or not same else _LINES
-    styles = ("-", "--", "-.", ":")
-    for number, (label, time, error) in enumerate(curves[:shown]):
-        ax.plot(
-            time,
-            error,
-            label=label,
-            color=shared.COLORS[number % len(shared.COLORS)],
-            linestyle=styles[number % len(styles)],
-            linewidth=1.6,
-        )
-    if curves[shown:]:
-        _draw_band(ax, curves[shown][1], [error for _, _, error in curves[shown:]])
+    errors = [error for _, _, error in curves]
+    lines_of = with_a_line(errors) if same else list(range(len(curves)))
+    for number in lines_of:
+        label, time, error = curves[number]
+        ax.plot(time, error, label=label, linewidth=1.6, **tracker_look(number))
+    rest = [error for number, error in enumerate(errors) if number not in lines_of]
+    draw_rest(ax, curves[0][1], rest)
     shade_maneuvers(ax, maneuvers, second)
     ax.set(xlabel=f"time ({unit})", ylabel=what)
-    _scale(ax, [error for _, _, error in curves])
+    scale_axis(ax, "y", errors)
     ax.margins(x=0.01)
     shared.finish(ax)
     shared.legend_below(ax)
@@ -163,29 +158,10 @@ def _draw(
         legend.set_title(f"root mean square of {count} plots")
 
 
-def _draw_band(ax: Axes, time: Array, errors: list[Array]) -> None:
-    """Median and quartiles of several trackers."""
-    together = np.array(errors)
-    known = np.isfinite(together).any(axis=0)
-    low, median, high = np.nanquantile(together[:, known], [0.25, 0.5, 0.75], axis=0)
-    label = f"{len(errors)} more: median and quartiles"
-    ax.plot(time[known], median, color=shared.GRAY, linewidth=1.2, label=label, zorder=1.9)
-    ax.fill_between(time[known], low, high, color=shared.GRAY, alpha=0.25, linewidth=0, zorder=1.8)
-
-
 def _suitable(lines: list[tuple[str, Array, Array]]) -> int:
     """An odd number of plots to smooth errors over; 1 if all lines can be read."""
     ragged = [len(error) for _, _, error in lines if is_ragged(error)]
     return 2 * round(max(ragged) * _SMOOTHED / 2) + 1 if ragged else 1
-
-
-def _scale(ax: Axes, errors: list[Array]) -> None:
-    """Linear from zero; logarithmic where the medians of errors are far apart."""
-    middles = [float(np.median(error[error > 0])) for error in errors if (error > 0).any()]
-    if middles and max(middles) > _APART * min(middles):
-        ax.set_yscale("log")
-    else:
-        ax.set_ylim(bottom=0.0)
 
 
 def _squares(result: TrackResult, truth: ArrayLike, place: tuple[int, ...], mean: bool) -> Array:

@@ -100,10 +100,21 @@ def test_more_trackers_than_can_be_told_apart_are_a_band(result, flight):
     _, truth, _ = flight
     other = np.linalg.norm(result.predicted - truth, axis=1)
     _, ax = plot_errors({str(k): result for k in range(9)}, truth)
-    assert list(lines(ax)) == ["0", "1", "2", "3", "5 more: median and quartiles"]
-    np.testing.assert_allclose(lines(ax)["5 more: median and quartiles"][:, 1], other[2:])
-    _, ax = plot_errors({str(k): result for k in range(5)}, truth)
-    assert list(lines(ax)) == ["0", "1", "2", "3", "4"]
+    assert list(lines(ax)) == ["0", "1", "2", "3", "4", "4 more: median and quartiles"]
+    np.testing.assert_allclose(lines(ax)["4 more: median and quartiles"][:, 1], other[2:])
+    _, ax = plot_errors({str(k): result for k in range(6)}, truth)
+    assert list(lines(ax)) == ["0", "1", "2", "3", "4", "5"]
+
+
+def test_the_first_and_the_best_trackers_have_a_line(tracker, flight):
+    t, truth, z = flight
+    results = {str(k): tracker.run(t, z + 100 * (9 - k)) for k in range(9)}
+    _, ax = plot_errors(results, truth)
+    assert list(lines(ax))[:-1] == ["0", "5", "6", "7", "8"]
+    middle = [np.linalg.norm(results[k].predicted - truth, axis=1)[2:] for k in "1234"]
+    np.testing.assert_allclose(
+        lines(ax)["4 more: median and quartiles"][:, 1], np.median(middle, axis=0)
+    )
 
 
 def test_errors_far_apart_are_on_a_logarithmic_scale(tracker, flight):

@@ -79,6 +79,14 @@ def test_eight_trackers_look_different_and_the_same_in_every_picture():
     assert all(look == looks[0] for look in looks)
 
 
+def test_maneuvers_are_shaded():
+    _, ax = plot_error_over_time(TIME, {"one": ONE}, maneuvers=[(1.0, 2.0)])
+    assert [(p.get_x(), p.get_width()) for p in ax.patches] == [(1.0, 1.0)]
+    assert names(ax) == ["one", "target maneuvers"]
+    with pytest.raises(ValueError, match="maneuvers: must be pairs of times"):
+        plot_error_over_time(TIME, {"one": ONE}, maneuvers=[(2.0, 1.0)])
+
+
 @pytest.mark.parametrize("curve", [np.full(4, np.nan), np.full(4, np.inf), np.zeros(4)])
 def test_a_tracker_without_errors_to_show_is_still_named(curve):
     for ax in (

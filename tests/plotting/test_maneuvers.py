@@ -28,6 +28,11 @@ def test_times_may_be_irregular_and_rows_missing():
     np.testing.assert_allclose(maneuvers_of(t, truth), [(30, 60)], atol=4.0)
 
 
+def test_where_a_target_always_turns_there_are_none():
+    t = np.arange(50.0)
+    assert maneuvers_of(t, flown(t, [(0, 50)])) == []
+
+
 def test_straight_and_short_paths_have_none():
     t = np.arange(50.0)
     assert maneuvers_of(t, np.stack([7 * t + 1e6, 0.1 - t / 3], axis=1)) == []
