@@ -73,7 +73,8 @@ gains = twofold.vertices[random.integers(len(twofold.vertices), size=60)]
 for matrix in error_matrix(*gains.T, random.uniform(1, 2, 60)):
     left.fill(*(matrix @ twofold.polygon.T), color="#0072B2", alpha=0.04)
 left.set(xlabel="error of predicted position (m)", ylabel="1 s × error of velocity (m)")
-left.legend(frameon=False)
+left.set(ylim=(-0.95, 1.35))  # room for the legend
+left.legend(frameon=False, loc="upper left")
 
 for run in range(20):
     gains = twofold.vertices[random.integers(len(twofold.vertices), size=40)]
