@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from hashlib import blake2b
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,57 +24,30 @@ from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.table import Words
 from fuzzytrack.recordings.last_plots import KNOWN
+from fuzzytrack.recordings.live_answers import (
+    REVISION,
+    AnswerPart,
+    Answers,
+    digests,
+    joined_answers,
+    taken,
+)
 from fuzzytrack.recordings.live_faults import LiveFaults
-from fuzzytrack.recordings.recent_rows import RecentRows, Row
+from fuzzytrack.recordings.recent_rows import RecentRows, Row, piece_of_rows, row_of
 from fuzzytrack.recordings.restarts import Restarts
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.track_table import TrackRows
 from fuzzytrack.recordings.tracking import PreparedPlots
-from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.compilation import announce
 
-__all__ = ["REVISION", "Answers", "LiveTracks", "check_rules"]
+__all__ = ["LiveTracks", "check_rules"]
 
-#: Column of how often an answer has been written again.
-REVISION = "revision"
 # Rows of the feed after which tracks that were silent for long are looked for; a fixed number, so
 # that answers do not depend on how the rows come.
 _SWEEP = 4096
 # Coordinates of a feed that never ends.
 _MANY = 1 << 62
-
-
-@dataclass(frozen=True, eq=False)
-class Answers:
-    """What is answered to some plots.
-
-    Attributes
-    ----------
-    columns : dict of (sequence of str or ndarray)
-        Values by the names of `TrackTable`, and `REVISION`, all of one length.
-    lines : ndarray of int
-        Line of the feed that each answers. Answers that a late plot has changed follow its own.
-    """
-
-    columns: dict[str, Any]
-    lines: NDArray[np.int64]
-
-    def __repr__(self) -> str:
-        return summary(self, rows=len(self.lines))
-
-    def __len__(self) -> int:
-        """Number of answers."""
-        return len(self.lines)
-
-
-@dataclass(frozen=True, eq=False)
-class _Part:
-    """Answers to rows of one kind, and where they belong among the others."""
-
-    columns: dict[str, Any]
-    lines: NDArray[np.int64]
-    order: NDArray[np.int64]
 
 
 class LiveTracks:
@@ -171,11 +143,11 @@ class LiveTracks:
         DataError
             If a number is infinite, or a track cannot be followed with floating-point numbers.
         """
-        parts: list[_Part] = []
+        parts: list[AnswerPart] = []
         for some in self._between_sweeps(piece):
             while len(some):
                 some = self._take(some, parts)
-        answers = _joined(parts, self.names)
+        answers = joined_answers(parts, self.names)
         self.counts["answers"] += len(answers)
         return answers
 
@@ -229,7 +201,7 @@ class LiveTracks:
             piece = piece.take(~before)
             self._swept = (int(piece.rows[0]) // _SWEEP + 1) * _SWEEP
 
-    def _take(self, piece: Piece, parts: list[_Part]) -> Piece:
+    def _take(self, piece: Piece, parts: list[AnswerPart]) -> Piece:
         """Take the rows of each track up to one that is out of order; those that still wait."""
         before = self._due(piece) if self.lateness else {}
         judged = self._cleaner.advance_live(piece)
@@ -237,9 +209,9 @@ class LiveTracks:
         if len(cleaned):
             columns = self._tracked(cleaned)
             if self.lateness:
-                self._remember(judged.seen, _digests(columns, self.names), before)
+                self._remember(judged.seen, digests(columns, self.names), before)
             columns[REVISION] = np.zeros(len(cleaned), dtype=np.int64)
-            parts.append(_Part(columns, cleaned.rows, np.zeros(len(cleaned), dtype=np.int64)))
+            parts.append(AnswerPart(columns, cleaned.rows, np.zeros(len(cleaned), dtype=np.int64)))
         waiting = judged.waiting
         if not len(waiting):
             return waiting
@@ -293,29 +265,32 @@ class LiveTracks:
                 recent = self.recent[id] = RecentRows()
             row = Row(time, tuple(plot), sigma, cell, line, answer, 0, before.pop(id, None))
             recent.add(row)
-            recent.prune(time - self.lateness)
+            if row.before is not None:
+                recent.prune(time - self.lateness)
 
-    def _place(self, rows: Piece, parts: list[_Part]) -> None:
+    def _place(self, rows: Piece, parts: list[AnswerPart]) -> None:
         """Put late rows in their place, at most one of each track, and run the tracks again."""
         again = {}
         newest = self._cleaner.numbers(_ids(rows), self._axes)[:, TIME].tolist()
         for k, last in enumerate(newest):
             id, time = rows.ids[k], float(rows.time[k])
             recent = self.recent.get(id, RecentRows())
-            same = recent.at(time)
+            # Older rows may still be there, but must not decide: it depends on how rows come.
+            in_reach = bool(self.lateness) and time >= last - self.lateness
+            same = recent.at(time) if in_reach else None
             if same is not None and _equal(same.plot, rows.plots[k].tolist()):
                 self.counts["copies"] += 1
             elif same is not None or time == last:
                 self._fault("repeated", rows, k, "its track has a plot at this time already")
-            elif not (self.lateness and time >= last - self.lateness):
+            elif not in_reach:
                 self._fault("too_late", rows, k, f"{last - time:.6g} s older than its track")
             else:
-                again[id] = recent.insert(_row(rows, k))
+                again[id] = recent.insert(row_of(rows, k))
         if again:
             self.counts["late"] += len(again)
             parts.append(self._again(again))
 
-    def _again(self, again: dict[str, tuple[int, int]]) -> _Part:
+    def _again(self, again: dict[str, tuple[int, int]]) -> AnswerPart:
         """Run tracks again from a row on, for a late one; answers to that, and those changed."""
         ids = list(again)
         befores = [self.recent[id].rows[first].before or b"" for id, (first, _) in again.items()]
@@ -323,9 +298,9 @@ class LiveTracks:
         rows = [self.recent[id].rows[first:] for id, (first, _) in again.items()]
         flat = [row for some in rows for row in some]
         counts = [len(some) for some in rows]
-        piece = _piece(ids, counts, flat, self.prepared.files.names[0])
+        piece = piece_of_rows(ids, counts, flat, self.prepared.files.names[0])
         columns = self._tracked(self._cleaner.replay(piece).cleaned)
-        answers = _digests(columns, self.names)
+        answers = digests(columns, self.names)
         chosen, lines, order = [], [], []
         start = 0
         for (first, place), count in zip(again.values(), counts, strict=True):
@@ -341,9 +316,9 @@ class LiveTracks:
             start += count
         self.counts["revisions"] += sum(flat[k].revision > 0 for k in chosen)
         places = np.array(chosen, dtype=np.intp)
-        taken = {name: _taken(columns[name], places) for name in self.names if name != REVISION}
-        taken[REVISION] = np.array([flat[k].revision for k in chosen], dtype=np.int64)
-        return _Part(taken, np.array(lines, dtype=np.int64), np.array(order, dtype=np.int64))
+        changed = {name: taken(columns[name], places) for name in self.names if name != REVISION}
+        changed[REVISION] = np.array([flat[k].revision for k in chosen], dtype=np.int64)
+        return AnswerPart(changed, np.array(lines, dtype=np.int64), np.array(order, dtype=np.int64))
 
     def _fault(self, kind: str, rows: Piece, k: int, what: str) -> None:
         id, cells = rows.ids[k], rows.time_cells
@@ -452,9 +427,6 @@ def check_rules(rules: Cleaning, lateness: float, forget: float | None) -> None:
         )
 
 
-# -------------------------------------------------------------------- rows and columns
-
-
 def _name(id: str, segment: float) -> str:
     """Name of a track as `Piece.tracks` has it."""
     return f"{id}\0{int(segment)}" if segment else id
@@ -468,57 +440,3 @@ def _ids(piece: Piece) -> list[str]:
 def _equal(one: Iterable[float], other: Iterable[float]) -> bool:
     """Whether positions are equal, with NaN in the same axes."""
     return all(a == b or (a != a and b != b) for a, b in zip(one, other, strict=True))
-
-
-def _row(piece: Piece, k: int) -> Row:
-    sigma = None if piece.sigma is None else tuple(piece.sigma[k].tolist())
-    cell = None if piece.time_cells is None else piece.time_cells[k]
-    plot = tuple(piece.plots[k].tolist())
-    return Row(float(piece.time[k]), plot, sigma, cell, int(piece.rows[k]))
-
-
-def _piece(ids: Sequence[str], counts: Sequence[int], rows: Sequence[Row], file: str) -> Piece:
-    """Rows of some tracks as a piece, one track after the other."""
-    return Piece(
-        Words(tuple(ids), np.repeat(np.arange(len(ids)), counts)),
-        np.array([row.time for row in rows]),
-        np.array([row.plot for row in rows]),
-        np.array([row.line for row in rows], dtype=np.int64),
-        file,
-        sigma=None if rows[0].sigma is None else np.array([row.sigma for row in rows]),
-        time_cells=None if rows[0].cell is None else [row.cell for row in rows],
-    )
-
-
-def _digests(columns: dict[str, Any], names: Sequence[str]) -> list[bytes]:
-    """Digest of each answer, by the bits of its numbers; its identity and time do not change."""
-    numbers = [columns[name] for name in names if isinstance(columns.get(name), np.ndarray)]
-    table = np.column_stack([np.asarray(each, dtype=np.float64) for each in numbers])
-    # Of the several NaN of a processor, one.
-    table[np.isnan(table)] = math.nan
-    return [blake2b(row.tobytes(), digest_size=8).digest() for row in table]
-
-
-def _taken(values: Any, places: NDArray[np.intp]) -> Any:
-    if isinstance(values, np.ndarray):
-        return values[places]
-    return [values[place] for place in places.tolist()]
-
-
-def _joined(parts: Sequence[_Part], names: Sequence[str]) -> Answers:
-    """Answers of all parts in the order of the lines, after each line those that it has changed."""
-    if not parts:
-        return Answers({name: np.empty(0) for name in names}, np.empty(0, dtype=np.int64))
-    if len(parts) == 1 and not parts[0].order.any():
-        return Answers({name: parts[0].columns[name] for name in names}, parts[0].lines)
-    lines = np.concatenate([part.lines for part in parts])
-    order = np.lexsort((np.concatenate([part.order for part in parts]), lines))
-    columns: dict[str, Any] = {}
-    for name in names:
-        values = [part.columns[name] for part in parts]
-        if all(isinstance(each, np.ndarray) for each in values):
-            columns[name] = np.concatenate(values)[order]
-        else:
-            every = [cell for each in values for cell in each]
-            columns[name] = [every[place] for place in order.tolist()]
-    return Answers(columns, lines[order])

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-__all__ = ["EVERY", "RecentRows", "Row"]
+import numpy as np
+
+from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.table import Words
+
+__all__ = ["EVERY", "RecentRows", "Row", "piece_of_rows", "row_of"]
 
 #: Rows between those before which the numbers of a track are kept. What lies between is run again,
 #: which takes little more time for eight rows than for one, and an eighth of the memory.
@@ -117,3 +123,26 @@ class RecentRows:
 
     def _place(self, time: float) -> int:
         return bisect_left(self.rows, time, key=lambda row: row.time)
+
+
+def row_of(piece: Piece, k: int) -> Row:
+    """A row of a piece."""
+    sigma = None if piece.sigma is None else tuple(piece.sigma[k].tolist())
+    cell = None if piece.time_cells is None else piece.time_cells[k]
+    plot = tuple(piece.plots[k].tolist())
+    return Row(float(piece.time[k]), plot, sigma, cell, int(piece.rows[k]))
+
+
+def piece_of_rows(
+    ids: Sequence[str], counts: Sequence[int], rows: Sequence[Row], file: str
+) -> Piece:
+    """Rows of some tracks as a piece, one track after the other."""
+    return Piece(
+        Words(tuple(ids), np.repeat(np.arange(len(ids)), counts)),
+        np.array([row.time for row in rows]),
+        np.array([row.plot for row in rows]),
+        np.array([row.line for row in rows], dtype=np.int64),
+        file,
+        sigma=None if rows[0].sigma is None else np.array([row.sigma for row in rows]),
+        time_cells=None if rows[0].cell is None else [row.cell for row in rows],
+    )

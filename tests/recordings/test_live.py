@@ -16,7 +16,8 @@ from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.plot_files import PlotFiles, Survey
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.table import Words
-from fuzzytrack.recordings.live import REVISION, LiveTracks
+from fuzzytrack.recordings.live import LiveTracks
+from fuzzytrack.recordings.live_answers import REVISION
 from fuzzytrack.recordings.restarts import Restarts
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.track_table import TrackRows
