@@ -91,17 +91,20 @@ class TrackResult:
         return f"TrackResult(shape={self.measured.shape}, kept={self.kept})"
 
     def plot(self, truth: ArrayLike | None = None, **options: Any) -> Figure:
-        """Picture of one track.
+        """Picture of one track, or of all tracks of a batch.
 
         Parameters
         ----------
         truth : array_like, optional
-            True positions, shaped as the plots.
+            True positions, shaped as the plots, of one track.
         **options
-            As for `fuzzytrack.plotting.plot_track`: track (of a batch), axes_names, unit, gains.
+            As for `fuzzytrack.plotting.plot_track`: track (of a batch), axes_names, unit, gains;
+            for a batch without `track` as for `fuzzytrack.plotting.plot_tracks`.
         """
-        from fuzzytrack.plotting import plot_track
+        from fuzzytrack.plotting import plot_track, plot_tracks
 
+        if self.measured.ndim > 2 and truth is None and "track" not in options:
+            return plot_tracks(self, **options)[0]
         return plot_track(self, truth, **options)[0]
 
     def _repr_html_(self) -> str:

@@ -103,6 +103,13 @@ def test_a_batch_is_its_tracks(batch):
     np.testing.assert_array_equal(missed, batch.filtered[5:6, 1, 2])
 
 
+def test_a_batch_draws_all_of_its_tracks_itself(batch):
+    drawn = lines(batch.plot(ids=list("abcdef")).axes[0])
+    np.testing.assert_array_equal(drawn["f"], batch.filtered[:, 1, 2])
+    drawn = lines(batch.plot(track=(0, 1)).axes[0])
+    np.testing.assert_array_equal(drawn["filtered"], batch.filtered[:, 0, 1])
+
+
 def test_one_track_is_drawn_with_all_that_is_known(result):
     _, ax = plot_tracks([result], ["A7"])
     assert {"plots", "predicted", "filtered", "coasted", "start", "end"} == set(lines(ax))
