@@ -97,11 +97,8 @@ def _pictures(
     def gain_plane() -> Figure:
         from fuzzytrack.plotting import plot_gain_plane
 
-        # Fixed gains are a single point, drawn as a mark above those of the others.
-        gains = {name: result.gains for name, result in results.items()}
-        marks = {name: gains.pop(name) for name in results if name.startswith("fixed:")}
-        points = {n: (float(g.alpha[-1, 0]), float(g.beta[-1, 0])) for n, g in marks.items()}
-        return plot_gain_plane(gains, load_rulebase(PUBLISHED), mark=points)[0]
+        # All of them in one order, so that a tracker has the color that it has in other pictures.
+        return plot_gain_plane(results, load_rulebase(PUBLISHED))[0]
 
     def track() -> Figure:
         from fuzzytrack.plotting import plot_track

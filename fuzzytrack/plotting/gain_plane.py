@@ -216,17 +216,23 @@ def _draw(
     marks: Mapping[str, Array],
     size: float = 4.0,
 ) -> None:
+    # A fixed pair of gains is one point; it is drawn above the spread gains of the others.
+    spread = {"markersize": size, "markeredgewidth": 0, "alpha": 0.65, "zorder": 3}
+    point = {
+        "markersize": 2 * size,
+        "markeredgewidth": 0.8,
+        "markeredgecolor": "white",
+        "zorder": 4,
+    }
     for number, (label, pairs) in enumerate(clouds.items()):
+        look: dict[str, Any] = point if len(pairs) == 1 else spread
         ax.plot(
             *pairs.T,
             linestyle="none",
             marker=shared.MARKERS[number % len(shared.MARKERS)],
-            markersize=size,
-            markeredgewidth=0,
-            alpha=0.65,
             color=shared.COLORS[number % len(shared.COLORS)],
             label=label,
-            zorder=3,
+            **look,
         )
     for label, curve in outline.items():
         ax.plot(*curve.T, color=shared.INK, linewidth=1.0, label=label, zorder=2)

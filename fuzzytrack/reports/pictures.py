@@ -195,13 +195,7 @@ def _draw_gain_plane(results: Results, labels: Sequence[str]) -> Figure:
     run = results.sample
     gains = map(Gains, run.alpha, run.beta, run.gamma)
     figure = _figure(6.2)
-    _, plane = plot_gain_plane(dict(zip(labels, gains, strict=True)), ax=figure.subplots())
-    for panel in (plane, *plane.child_axes):
-        for line in panel.lines:
-            # A fixed pair of gains is one point; it is drawn above the spread gains of the others.
-            if line.get_label() in labels and np.size(line.get_xdata()) == 1:
-                line.set(zorder=4, markersize=8, alpha=1.0, markeredgewidth=0.8)
-                line.set_markeredgecolor("white")
+    plot_gain_plane(dict(zip(labels, gains, strict=True)), ax=figure.subplots())
     return figure
 
 
