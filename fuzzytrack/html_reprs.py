@@ -138,10 +138,14 @@ def _class(name: str, holds: bool) -> str:
 
 def tint(share: float) -> str:
     """Color of a value between the least (0) and the greatest (1), as a CSS background."""
-    low, high = _HUES
-    # Gray in the middle.
-    hue, strength = (low, 1 - 2 * share) if share < 0.5 else (high, 2 * share - 1)
+    hue, strength = _hue(share)
     return f"hsla({hue:.0f},{90 * strength:.0f}%,50%,{0.14 + 0.24 * strength:.2f})"
+
+
+def _hue(share: float) -> tuple[float, float]:
+    """Hue and saturation: gray in the middle."""
+    low, high = _HUES
+    return (low, 1 - 2 * share) if share < 0.5 else (high, 2 * share - 1)
 
 
 def tinted(text: str, share: float) -> Cell:
@@ -203,8 +207,7 @@ def curves(x: Array, values: Mapping[str, Array], shares: Sequence[float]) -> st
 
 def _ink(share: float) -> str:
     """Color of a line; see `tint`."""
-    low, high = _HUES
-    hue, strength = (low, 1 - 2 * share) if share < 0.5 else (high, 2 * share - 1)
+    hue, strength = _hue(share)
     return f"hsl({hue:.0f},{80 * strength:.0f}%,50%)"
 
 

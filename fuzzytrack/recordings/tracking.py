@@ -14,6 +14,7 @@ from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.plot_files import Input, PlotFiles, Survey
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Recording, Track, read_recording, recording_files
+from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.judging import GateWidth, judge_of
 from fuzzytrack.recordings.notebook import html_of
@@ -382,4 +383,6 @@ class TrackedRecording:
         """Table of the first tracks, with a small picture, for notebooks."""
         ids = [track.id for track in self.recording.tracks]
         tracks = list(zip(ids, self.results, strict=True))
-        return html_of(repr(self), tracks, self.findings.sentences(), self.plot(gains=False))
+        title = f"{counted(len(self), 'track')} by {self.spec}"
+        told = (*self.findings.notes, *self.findings.sentences())
+        return html_of(title, tracks, told, self.plot(gains=False))
