@@ -135,7 +135,6 @@ def _prepared(value: Any, dtype: type) -> Any:
 
 @lru_cache(maxsize=512)
 def _helper(content: _Content) -> Any:
-    import numba
+    from fuzzytrack.kernels.llvm import inlined
 
-    # Helpers are inlined whatever their size: a call keeps a loop from being vectorized.
-    return numba.njit(_prepared_copy(content), error_model="numpy", forceinline=True)
+    return inlined(_prepared_copy(content))

@@ -27,10 +27,10 @@ from numba.extending import intrinsic
 from fuzzytrack.kernels import language
 from fuzzytrack.kernels.cache import KernelFolder
 
-__all__ = ["c_function", "call", "keep_on_disk", "pointer", "word_for_compiler"]
+__all__ = ["c_function", "call", "inlined", "keep_on_disk", "pointer", "word_for_compiler"]
 
 #: Part of what code is kept by. Raise it when this room compiles the same function differently.
-_SCHEME = 6
+_SCHEME = 7
 _MADE_BY = (_SCHEME, sys.implementation.cache_tag, numba.__version__, llvmlite.__version__)
 
 #: Vectors that the compiler works on in each iteration of a loop.
@@ -114,6 +114,22 @@ def c_function(
     keep_on_disk(made, digest)
     made.compile()
     return made
+
+
+#: The annotations of Numba leave some of its options out.
+_INLINED: Any = {
+    "error_model": "numpy", "forceinline": True, "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}  # fmt: skip
+
+
+def inlined(helper: Callable[..., Any]) -> Any:
+    """Numba dispatcher of a function that only compiled code calls.
+
+    It is inlined whatever its size: a call keeps a loop from being vectorized. Code by which Python
+    or C could call it is left out, which would take a quarter of the time to compile.
+    """
+    return numba.njit(helper, **_INLINED)
 
 
 # ---------------------------------------------------------------- words of the language

@@ -130,9 +130,7 @@ def _numbers(function: FunctionType) -> list[float]:
 def _compiled(
     function: FunctionType, arguments: str, memory: Array, differ: Collection[int]
 ) -> Any:
-    import numba
-
-    from fuzzytrack.kernels.llvm import c_function
+    from fuzzytrack.kernels.llvm import c_function, inlined
     from fuzzytrack.kernels.slots import Slot
 
     mark, place = uuid.uuid4().hex, 0
@@ -149,7 +147,7 @@ def _compiled(
     def helper(copy: FunctionType) -> Any:
         # Code is linked by name.
         copy.__qualname__ = f"{copy.__name__}_{mark}_{place}"
-        return numba.njit(copy, error_model="numpy", forceinline=True)
+        return inlined(copy)
 
     made = _rebuilt(function, take, helper, {})
     return c_function(made.py_func, arguments, np.float64, None)
