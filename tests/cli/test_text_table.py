@@ -113,6 +113,7 @@ FEW = ("--runs", 2, "--trackers", "fixed:alpha=0.5377:beta=0.2018,omega-schedule
 COMMANDS = {
     "track": ("track", "plots.csv"),
     "compare": ("compare", "plots.csv", "--noise", 3, *FEW),
+    "compare recorded": ("compare", "plots.csv", "--sigma", 3, "--truth", "x,y", *FEW[2:]),
     "demo": ("demo", "-o", "made", "--runs", 1),
     "testbed": ("testbed", "report", *FEW),
     "testbed list": ("testbed",),
