@@ -358,7 +358,8 @@ class _Picture:
         near &= (box.y0 - high <= y) & (y <= box.y1 + high)
         outside = int(np.sum(np.isfinite(x) & np.isfinite(y) & ~near))
         label = "plots not used" + (f" (+ {outside} outside)" if outside else "")
-        ax.plot(x[near], y[near], label=label, **STYLES["rejected"])
+        smaller = {"markersize": 2.5, "markeredgewidth": 0.7} if near.sum() > MARKED else {}
+        ax.plot(x[near], y[near], label=label, **{**STYLES["rejected"], **smaller})
 
     # ---------------------------------------------------------------- names and legend
 

@@ -128,6 +128,17 @@ def test_plots_that_a_gate_rejected_are_marked_and_do_not_shrink_the_rest():
     assert ax.get_xlim()[1] < 60
 
 
+@pytest.mark.parametrize("count", [5, 200])
+def test_rejected_plots_are_small_where_they_are_many(count):
+    t = np.arange(300.0)
+    result = FIXED.run(t, np.where(t[:, None] < 300 - count, t[:, None] + [0.0, 1.0], np.nan))
+    result.measured[300 - count :] = result.filtered[300 - count :] + 5
+    _, ax = plot_tracks([result])
+    (rejected,) = (line for line in ax.lines if line.get_label() == "plots not used")
+    assert len(rejected.get_xdata()) == count
+    assert (rejected.get_markersize() < 3) == (count > 75)
+
+
 def test_many_plots_are_drawn_by_their_density():
     t = np.arange(5000.0)
     z = np.random.default_rng(2).normal(size=(5000, 2))
