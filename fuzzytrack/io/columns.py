@@ -334,6 +334,8 @@ def _check_used(said: PlotDescription, columns: Columns) -> None:
             )
         if len(said.own_ship) not in (2, 3):
             raise DataError(f"`own_ship`: {len(said.own_ship)} given; expected 2 or 3")
+    if said.site is not None and position in ("cartesian", "angle") and count < 2:
+        raise DataError("`site`: one coordinate has no place on earth; leave it out")
     if said.own_heading is not None and position == "geodetic":
         raise DataError("`own_heading`: cannot turn geodetic positions; give `polar`")
     for argument in ("geodetic", "own_ship"):

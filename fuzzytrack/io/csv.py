@@ -80,7 +80,7 @@ class CsvSource:
     @property
     def notes(self) -> list[str]:
         """What has been left out of the file so far, and why."""
-        plural = {"repeated row of names": "repeated rows of names"}
+        plural = {f"repeated row of {of}": f"repeated rows of {of}" for of in ("names", "units")}
         return [
             f"{self.file}: {counted(count, what, plural.get(what))} left out"
             for what, count in self._left_out.items()

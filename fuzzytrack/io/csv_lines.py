@@ -183,7 +183,10 @@ class _Rows:
             self._after_names = True
             self._count("repeated row of names")
             return False
-        return not (after and is_units_row(row))
+        if after and is_units_row(row):
+            self._count("repeated row of units")
+            return False
+        return True
 
     def _is_names(self, row: Sequence[str]) -> bool:
         return all(

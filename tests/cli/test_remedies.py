@@ -140,3 +140,9 @@ def test_a_tracker_that_needs_the_noise_is_named(fails, csv):
 def test_a_note_about_too_few_plots_names_the_column(run, csv):
     result = run("track", csv("t,up\n0,0\n1,1\n2,2\n"), "--axes", "up")
     assert "too few plots to estimate their noise: up has 0 runs" in result.stderr
+
+
+@pytest.mark.parametrize("columns", [("--axes", "x"), ("--angle", "x")])
+def test_a_site_of_one_coordinate(fails, plots, columns):
+    line = fails("track", plots, *columns, "--site", "50,8")
+    assert line == "error: --site: one coordinate has no place on earth; leave it out"

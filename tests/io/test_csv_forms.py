@@ -102,6 +102,16 @@ def test_what_is_left_out_is_counted(tmp_path):
     assert read(written(tmp_path, PLAIN))[1].notes == []
 
 
+def test_units_that_are_repeated_below_the_names_are_counted(tmp_path):
+    head, *rows = PLAIN.splitlines()
+    (table,), source = read(written(tmp_path, "\n".join([head, "s,m,m", *rows] * 3) + "\n"))
+    assert table.numbers["x"].tolist() == 3 * X
+    assert source.notes == [
+        f"{source.file}: 2 repeated rows of names left out",
+        f"{source.file}: 2 repeated rows of units left out",
+    ]
+
+
 def test_units_are_given_as_they_are_usually_written(tmp_path):
     _, source = read(written(tmp_path, "time,x,y\n[msec],(Meters),-\n0,1,2\n"))
     assert source.units == {"time": "ms", "x": "m", "y": "-"}
