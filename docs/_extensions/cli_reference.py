@@ -64,7 +64,9 @@ def told(parameter):
     """What an option does, what it may be, and what it is unless given."""
     help = parameter.help or ""
     text = marked(DEFAULT.sub("", help).rstrip(".") + ".")
-    low, high = (getattr(parameter, name, None) for name in ("min", "max"))
+    # Where limits are depends on the version of typer.
+    limits = parameter if hasattr(parameter, "min") else parameter.type
+    low, high = (getattr(limits, name, None) for name in ("min", "max"))
     if low is not None and high is not None:
         text += f" From {low:g} to {high:g}."
     elif low is not None:
