@@ -24,6 +24,7 @@ _LEAST, _MOST = 20, 4000
 _CERTAIN, _ALIKE = 0.2, 1.05
 # Standard errors within which a lag may be chance.
 _CHANCE = 3.0
+_STEADY = "the targets move too steadily to tell it from an offset"
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,8 @@ def fitted_lag(tracks: Sequence[Track], true: Recording) -> ClockLag:
     sizes = np.array([_spread(_distances(few, true, lag)) for lag in lags])
     if not np.isfinite(sizes[len(sizes) // 2]):
         return ClockLag(0.0, math.nan, "the truth is known for too few plots")
+    if np.nanmax(sizes) < _ALIKE * np.nanmin(sizes):
+        return ClockLag(0.0, math.nan, _STEADY)
     best = int(np.nanargmin(sizes))
     if best in (0, len(sizes) - 1) or np.isnan(sizes[best - 1 : best + 2]).any():
         return ClockLag(0.0, math.nan, f"no lag within ±{window:.3g} s fits best")
@@ -101,7 +104,7 @@ def fitted_lag(tracks: Sequence[Track], true: Recording) -> ClockLag:
         return ClockLag(0.0, math.nan, "several lags fit alike")
     error, moved = _error(tracks, true, lag, interval / 4)
     if not moved < _CERTAIN * size:
-        return ClockLag(0.0, math.nan, "the targets move too steadily to tell it from an offset")
+        return ClockLag(0.0, math.nan, _STEADY)
     return ClockLag(lag, error)
 
 

@@ -223,6 +223,8 @@ class RecordedComparison:
         """Everything in plain types, for JSON."""
         best = best_of(self.errors)
         given = {**asdict(self), "notes": list(self.notes)}
+        if self.lag is not None:
+            given["lag"]["taken_off"] = self.lag.taken_off
         scores = given.pop("scores")
         for score, mark in zip(scores, self.marks, strict=True):
             score["worse_than_plots"] = "worse" in mark

@@ -66,6 +66,7 @@ def test_with_truth(run, files):
     (clock,) = re.findall(r"the plots are (\S+) ± \S+ s behind the truth", result.stdout)
     assert float(clock) == pytest.approx(3, abs=0.2)
     told = json.loads(run("compare", files[0], *words, "--json").stdout)
+    assert told["lag"]["taken_off"] == told["lag"]["lag"] == pytest.approx(float(clock), abs=0.01)
     assert told["measured_rmse"] == pytest.approx(2 * math.sqrt(2), rel=0.15)
     assert "\nthe plots themselves " in result.stdout
     for one in told["trackers"]:

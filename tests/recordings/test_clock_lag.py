@@ -57,25 +57,47 @@ def test_several_tracks_have_one_lag():
     assert found.lag == pytest.approx(2.0, abs=4 * found.error)
 
 
-def test_along_a_straight_path_a_lag_is_an_offset():
-    found = fitted_lag(*recorded(steady, 1.0))
-    assert (found.lag, math.isnan(found.error)) == (0.0, True)
-    assert found.unknown
+def test_straight_paths_in_other_directions_tell_a_lag():
+    tracks, truth = [], []
+    for name, course in (("a", 0.2), ("b", 2.5)):
+        way = np.array([np.cos(course), np.sin(course)])
+        plots, true = recorded(lambda t, way=way: 12 * t[:, None] * way, 1.5, names=(name,))
+        tracks += plots
+        truth += true.tracks
+    found = fitted_lag(tracks, Recording("truth.csv", COLUMNS, tuple(truth)))
+    assert found.lag == pytest.approx(1.5, abs=4 * found.error)
+    assert found.taken_off == found.lag
+
+
+def gentle(t):
+    return np.stack([10 * t, 0.002 * t**2], axis=1)
+
+
+def circling(t):
+    return np.stack([50 * np.sin(t), 50 * np.cos(t)], axis=1)
 
 
 @pytest.mark.parametrize(
-    ("path", "why"),
+    ("path", "lag", "why"),
     [
-        (lambda t: np.stack([50 * np.sin(t), 50 * np.cos(t)], axis=1), "several lags"),
-        (lambda t: np.zeros((len(t), 2)), ""),
-        (lambda t: np.stack([t**2, t], axis=1), ""),
+        (steady, 1.0, "move too steadily"),
+        (gentle, 1.0, "move too steadily"),
+        (lambda t: np.zeros((len(t), 2)), 0.0, "move too steadily"),
+        (circling, 0.0, "several lags fit alike"),
+        (turning, 70.0, "no lag within ±49.5 s fits best"),
     ],
 )
-def test_what_fits_at_many_lags_is_said(path, why):
-    found = fitted_lag(*recorded(path, 30.0 if why == "" else 0.0))
-    assert found.lag == 0 or found.unknown == ""
-    if why:
-        assert why in found.unknown
+def test_a_lag_that_cannot_be_told_is_none(path, lag, why):
+    found = fitted_lag(*recorded(path, lag))
+    assert why in found.unknown
+    assert (found.lag, found.taken_off) == (0.0, 0.0)
+    assert math.isnan(found.error)
+
+
+def test_a_lag_that_may_be_chance_is_not_taken_off():
+    found = fitted_lag(*recorded(turning, 0.0))
+    assert abs(found.lag) < 3 * found.error
+    assert found.taken_off == 0
 
 
 def test_too_little_is_said():
