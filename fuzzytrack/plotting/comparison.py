@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -103,8 +104,7 @@ def plot_comparison(
             color="0.3",
         )
     _scale(plane, np.concatenate([*points.values(), list((reference or {}).values())]))
-    shown = [name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…" for name in names]
-    plane.set_yticks(range(len(names)), [name.replace("$", r"\$") for name in shown])
+    plane.set_yticks(range(len(names)), list(map(_short, names)))
     if categories is None:
         _mark_least(plane, [float(row[0]) for row in points.values()])
     plane.set_ylim(len(names) - 0.5, -0.5)
@@ -117,6 +117,12 @@ def plot_comparison(
     if categories is not None:
         shared.legend_below(plane)
     return figure, plane
+
+
+def _short(name: str) -> str:
+    """Name that fits beside the axes; its dollars begin no formula, escaped already or not."""
+    cut = name if len(name) <= LONGEST else f"{name[: LONGEST - 1]}…"
+    return re.sub(r"(?<!\\)\$", r"\\$", cut)
 
 
 def _mark_least(ax: Axes, values: Sequence[float]) -> None:

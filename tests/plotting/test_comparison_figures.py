@@ -45,11 +45,11 @@ def test_a_row_for_each_tracker_without_categories():
 
 
 def test_the_least_is_bold_and_long_names_are_cut():
-    names = ["a", "b$", "x" * 60, "none"]
-    figure, ax = plot_comparison(dict(zip(names, [3.0, 2.0, 9.0, np.nan], strict=True)))
+    names = ["a", "b$", "x" * 60, "none", r"\$c"]
+    figure, ax = plot_comparison(dict(zip(names, [3.0, 2.0, 9.0, np.nan, 4.0], strict=True)))
     figure.canvas.draw()
-    assert [t.get_fontweight() == "bold" for t in ax.get_yticklabels()] == [0, 1, 0, 0]
-    assert rows(ax) == ["a", r"b\$", "x" * 39 + "…", "none"]
+    assert [t.get_fontweight() == "bold" for t in ax.get_yticklabels()] == [0, 1, 0, 0, 0]
+    assert rows(ax) == ["a", r"b\$", "x" * 39 + "…", "none", r"\$c"]
 
 
 def test_a_reference_is_a_line_with_its_name():
