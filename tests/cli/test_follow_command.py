@@ -326,6 +326,7 @@ def test_a_feed_in_order_is_answered_as_its_file_is_tracked(tmp_path, follow):
 def test_the_example_of_the_guide_is_what_it_prints(follow):
     page = (ROOT / "docs" / "live.md").read_text()
     (feed,) = re.findall(r"^`feed.csv`.*?```text\n(.*?)^```", page, flags=re.M | re.S)
+    page = page.replace("\\\n", "")
     ((command, shown),) = re.findall(r"^```console\n\$ (.*?)\n(.*?)^```", page, flags=re.M | re.S)
     program, _, _, _, *options = shlex.split(command.partition("<")[0])
     assert program == ".venv/bin/fuzzytrack"

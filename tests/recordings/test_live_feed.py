@@ -140,6 +140,19 @@ def test_a_feed_that_goes_on_from_a_state_gives_the_same_answers(cut, tmp_path):
     assert len(first) >= cut - 1
 
 
+def test_late_polar_plots_with_noise_of_their_own_end_as_sorted_ones():
+    lines = polar_lines()
+    feed, in_order = (a_feed("maneuver", lateness=6.0, **POLAR) for _ in range(2))
+    rows = pushed(feed, "\n".join(lines))
+    last = {(row[0], row[1]): row[2:-1] for row in rows}
+    sorted_lines = [lines[0], *sorted(lines[1:], key=lambda line: int(line.split(",")[0]))]
+    assert last == {
+        (row[0], row[1]): row[2:-1] for row in pushed(in_order, "\n".join(sorted_lines))
+    }
+    assert feed.tracks.counts["late"] == 12
+    assert in_order.tracks.counts["revisions"] == 0
+
+
 def test_plots_around_midnight_are_put_in_their_place():
     times = ["23:59:50", "23:59:52", "23:59:54", "00:00:00", "23:59:58", "00:00:02", "23:59:56"]
     text = "\n".join(f"{time},{k * k}" for k, time in enumerate(times))
