@@ -159,6 +159,18 @@ def test_plots_are_read_as_track_reads_them(run, csv, tmp_path):
     assert start.held_out == pytest.approx(np.sqrt(used.mean()), rel=0.03)
 
 
+def test_bearings_are_tuned_on_the_circle_as_track_tracks_them():
+    rng = np.random.default_rng(5)
+    bearing = (340 + 0.3 * np.arange(220) + rng.normal(0, 1, 220)) % 360
+    plots = {"t": np.arange(220), "bearing": bearing}
+    spec = "fixed:alpha=0.5:beta=0.3"
+    (result,) = ft.track(plots, spec, angle="bearing").results
+    found = ft.tune(plots, spec, angle="bearing", trials=1, folds=2)
+    innovations = result.innovation[2:]
+    assert np.abs(np.diff(bearing)).max() > 300
+    assert found.rows[0].held_out == pytest.approx(np.sqrt((innovations**2).mean()), rel=1e-9)
+
+
 def test_data_without_sigma_are_refused_where_it_is_needed(fails, csv):
     # Every second plot repeats the one before: there is no noise to be seen.
     rows = [f"{k},{40 * (k // 2)},0" for k in range(480)]
