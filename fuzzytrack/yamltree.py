@@ -85,6 +85,11 @@ _SYNTAX = (
         False,
         "a ':' where none may be: put the text in quotes, or mend the indentation",
     ),
+    (
+        "expected '<document start>'",
+        False,
+        "text after the end of the rule base or scenario; is this a file of another program?",
+    ),
     ("while scanning a quoted scalar", True, "the quotation mark is not closed"),
 )
 

@@ -152,6 +152,7 @@ def rulebase_path(name_or_path: str | os.PathLike[str]) -> Path:
     Raises
     ------
     RuleBaseError
-        If it is the name of no shipped rule base.
+        If it is the name of no shipped rule base, or of a file that is none.
     """
+    refuse_other_files(name_or_path)
     return _SHIPPED.path(name_or_path)

@@ -66,7 +66,15 @@ def test_a_rule_base_that_is_no_text(fails, csv, raw, what):
     assert fails("rulebase", "show", path) == f"{path}:1:1: {what}"
 
 
-@pytest.mark.parametrize("command", ["rulebase show", "track plots.csv --tracker"])
+def test_the_text_of_another_program_in_a_file_of_ours(fails, csv):
+    path = csv("[System]\nName='tipper'\n", "mine.yaml")
+    assert fails("rulebase", "show", path).endswith("is this a file of another program?")
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["rulebase show", "track plots.csv --tracker", "rulebase new -o y.yaml", "surface", "certify"],
+)
 @pytest.mark.parametrize(
     ("file", "message"),
     [
