@@ -62,7 +62,7 @@ def save_picture(
 def surfaces(
     system: FuzzySystem, points: int, at: dict[str, float] | None = None, *, style: str = "surface"
 ) -> Figure:
-    """Surfaces of all outputs; under them α and β, where the outputs are no gains but give them."""
+    """Surfaces of all outputs, and of α and β where the outputs are no gains but give them."""
     from matplotlib.figure import Figure
 
     from fuzzytrack.plotting import plot_gain_surfaces, plot_surface
@@ -71,12 +71,13 @@ def surfaces(
     gains = find_gain_outputs(system.rules.output_names)
     if at or gains is None or gains.setting == "direct":
         return plot_surface(system, points=points, at=at, style=style)[0]
-    figure = Figure(figsize=(11.2, 8.8), layout="constrained")
+    # Stiffness beside the two gains, or stiffness and damping above them.
+    alone = len(system.rules.outputs) == 1
+    figure = Figure(figsize=(14.4, 4.4) if alone else (11.2, 8.8), layout="constrained")
     flat = style == "contour" or len(system.rules.inputs) == 1
-    axes = figure.subplots(2, 2, subplot_kw=None if flat else {"projection": "3d"})
-    if len(system.rules.outputs) == 1:
-        axes[0, 1].remove()
-    outputs = axes[0, : len(system.rules.outputs)]
+    kind = None if flat else {"projection": "3d"}
+    axes = figure.subplots(1 if alone else 2, 3 if alone else 2, subplot_kw=kind).ravel()
+    outputs, gains = axes[:-2], axes[-2:]
     plot_surface(system, points=points, style=style, axes=outputs)
-    plot_gain_surfaces(system, points=points, style=style, axes=axes[1])
+    plot_gain_surfaces(system, points=points, style=style, axes=gains)
     return figure
