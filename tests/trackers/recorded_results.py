@@ -146,8 +146,12 @@ def track(case, tracker, given, dtype, **settings):
 def _runs(case, tracker, name, given, dtype, way):
     """Tracks at once, in parts, with less kept, and one of them alone."""
     steps, tracks = given.plots.shape[:2]
-    result, calls = counted(lambda: track(case, tracker, given, dtype))
-    evidence = (calls, steps * tracks) if way == "plain" else (None, 0)
+    if way == "plain":
+        result, calls = counted(lambda: track(case, tracker, given, dtype))
+        evidence = (calls, steps * tracks)
+    else:
+        # Counting would make the compiler, which is Python, several times slower.
+        result, evidence = track(case, tracker, given, dtype), (None, 0)
     yield Replay(name, dtype, way, whole(result), (), 1, *evidence)
 
     last = outputs_of(result.state)
