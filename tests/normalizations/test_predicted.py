@@ -174,6 +174,7 @@ def told(missed, values, times, sigmas):
     return rows, [np.asarray(value)[rows] for value in values], steps, sigmas[rows]
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("missed", ["elapsed", "step"])
 def test_on_a_straight_run_the_signal_has_unit_variance(missed):
     n, tracks = 24, 4000

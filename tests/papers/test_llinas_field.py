@@ -27,6 +27,7 @@ def mean_error(tracker, t, truth, plots):
     return distance.mean(), distance.mean(axis=0).std(ddof=1) / math.sqrt(distance.shape[1])
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("name", TRACKERS)
 def test_mean_errors(name):
     tracker, field = make_tracker(TRACKERS[name]), canonical_field()

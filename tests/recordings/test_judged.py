@@ -191,6 +191,7 @@ def test_any_spikes_gaps_and_cuts(seed, n, n_tracks, share, again, cuts):
     check(FIXED, t, z, sigma, Judge(Gate(8.0, again)), cuts)
 
 
+@pytest.mark.untraced
 @given(
     seed=st.integers(0, 10_000),
     rate=st.floats(-200, 200),
@@ -207,6 +208,7 @@ def test_any_angles(seed, rate, gate, cuts):
     check(TRACKERS["kalman"], t, np.mod(z, 360), 1.0, Judge(gate, Circle()), cuts)
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("length", [40, 33])
 def test_blocks_of_any_length(length, monkeypatch):
     from fuzzytrack.recordings import judged
@@ -290,6 +292,7 @@ def test_no_plots():
 NAMES = ("maneuver", "stiffness-damping", "fixed", "kalman", "imm-three", "chan-style")
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize(
     ("kind", "missed"), [("constant T", 0.0), ("jitter", 0.0), ("jitter", 0.2)]
 )
@@ -305,6 +308,7 @@ def test_targets_that_maneuver_lose_no_plots(name, kind, missed):
         assert missed or not found.begins.any()
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("kind", ["constant T", "jitter"])
 @pytest.mark.parametrize("name", ["report", "mixed", "strong"])
 def test_spikes_are_rejected(name, kind):

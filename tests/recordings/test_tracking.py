@@ -165,6 +165,7 @@ def test_numbers_beyond_any_use_are_counted_without_a_warning():
     assert tracked.findings.cleaning.fills == 20
 
 
+@pytest.mark.untraced
 def test_a_target_that_moves_by_more_than_its_noise_is_not_gated():
     """As a drone with a positioning error of centimeters."""
     rng = np.random.default_rng(9)

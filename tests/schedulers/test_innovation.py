@@ -119,6 +119,7 @@ def simulate(scheduler, runs=400, start=2):
     return np.sqrt(np.mean(errors**2, axis=1)), alpha
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize(
     ("scheduler", "mean", "maneuver", "quiet"),
     [
@@ -136,6 +137,7 @@ def test_errors_on_the_published_scenario(scheduler, mean, maneuver, quiet):
     assert ours == pytest.approx([mean, maneuver, quiet], rel=0.025)
 
 
+@pytest.mark.untraced
 def test_unit_process_noise_latches_up():
     """25 s after the maneuver the gains of nearly all runs are still those of a maneuver."""
     _, alpha = simulate(InnovationScheduler.as_published(q_scale=1.0), runs=200)

@@ -92,6 +92,7 @@ def simulated(order, times, sigma, missing, tracks, start_sigmas, seed, missed):
     return truth, plots[..., None]
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize("missed", ["elapsed", "step"])
 @pytest.mark.parametrize("start", ["one-point", "two-point"])
 @pytest.mark.parametrize("gains", [ALPHA_BETA, ALPHA_BETA_GAMMA], ids=["ab", "abg"])
