@@ -73,6 +73,8 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "thumbnail_size": (560, 400),
     "min_reported_time": 5,
+    # A picture is shown; what it is called in memory says nothing.
+    "ignore_repr_types": r"matplotlib|tuple",
     # Its tables of times load scripts from the network.
     "write_computation_times": False,
 }

@@ -56,3 +56,4 @@ found.pictures["error-y"]()
 for row in found.rows:
     if row.table in ("Table 3", "Table 4", "Table 5", "Table 6") and row.verdict == "differs":
         print(f"{row.table}, {row.quantity}: {row.published} should be {row.ours:.4f}")
+# sphinx_gallery_thumbnail_number = 3

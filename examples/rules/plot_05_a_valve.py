@@ -45,3 +45,4 @@ for flow in (0.0, 0.25, 0.5, 1.25):
     trusted = ft.FuzzySystem(valve)(flow=flow)["opening"]
     half = ft.FuzzySystem(doubted)(flow=flow)["opening"]
     print(f"flow {flow:4.2f}:  opening {trusted:.3f}  by half {half:.3f}")
+# sphinx_gallery_thumbnail_number = 2

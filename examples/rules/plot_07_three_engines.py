@@ -57,3 +57,4 @@ figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
 for ax, method in zip(axes, ("exact", "relation"), strict=True):
     ft.plot_surface(rules, "damping", points=201, method=method, style="contour", axes=ax)
     ax.set_title(method)
+# sphinx_gallery_thumbnail_number = 2

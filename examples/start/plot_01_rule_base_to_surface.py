@@ -37,3 +37,4 @@ for name in ("before", "after"):
 # %%
 # The ridge has a notch, as wide as the sets of that cell and no wider.
 ft.plot_surface(edited, style="contour")
+# sphinx_gallery_thumbnail_number = 2
