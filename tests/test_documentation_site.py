@@ -102,7 +102,7 @@ def test_files_that_a_page_names():
         (["mkdir d; true -o d"], "", "does not write d"),
         (["true"], "`a.csv`", "there is no a.csv"),
         (['test "$(env | grep -c ^FUZZY)" = 0'], "", None),
-        (["sleep 9"], "", "takes longer"),
+        (["sleep 9"], "", "hangs"),
     ],
 )
 def test_a_walk(lines, rest, fault, tmp_path, monkeypatch):
