@@ -2,6 +2,10 @@
 
 A process writes plots of many tracks through a pipe at a steady pace and stamps them; this one
 takes the answers and subtracts. Run as ``python -m benchmarks.live``.
+
+On a machine with other work the figures are those of its scheduler. With ``--cpu`` no time is
+waited: lines are pushed in the parts in which they would be there if the processor time that each
+part takes were all, and so the latency is that on a processor of its own, without pipes.
 """
 
 from __future__ import annotations
@@ -23,9 +27,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.recordings.live_feed import LiveFeed
+from fuzzytrack.recordings.live_state import LiveState
+
 # Lines that are written together, and so have one stamp.
 TOGETHER = 10
 HEADER = b"time,track,x,y\n"
+# Lines that the command takes together, at most.
+MOST = 500
 # The first seconds do not count.
 WARM_UP = 2.0
 COMMAND = [
@@ -44,6 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
         "--late", type=float, default=0.0, help="share of plots that are late, with --lateness"
     )
     parser.add_argument("--no-state", action="store_true", help="save no state meanwhile")
+    parser.add_argument("--cpu", action="store_true", help="by processor time, without pipes")
     parser.add_argument("--no-kill", action="store_true", help="leave out kill -9 and resume")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures")
     # The process that writes is this module, too.
@@ -51,6 +62,9 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     if given.write_to:
         write_plots(given)
+        return 0
+    if given.cpu:
+        show(by_processor_time(given), given)
         return 0
     with TemporaryDirectory() as folder:
         figures = latencies(given, Path(folder))
@@ -202,6 +216,38 @@ def show(figures: dict[str, Any], given: argparse.Namespace) -> None:
     print("memory by the minute (MB): " + " ".join(f"{m:.0f}" for m in figures["memory_mb"]))
     print("load average: " + " ".join(f"{load:.1f}" for load in figures["load_average"]))
     print(figures["said"].strip())
+
+
+def by_processor_time(given: argparse.Namespace) -> dict[str, Any]:
+    """Latency if a line waited only for the processor time of this feed."""
+    reading = Reading.of(id="track", sigma=10.0, least_step=0.001)
+    feed = LiveFeed(reading, lateness=given.lateness, begin=lambda tracks: tracks.warm_up())
+    scans = int((given.minutes * 60 + WARM_UP) * given.hz)
+    text = b"".join(plots(given.tracks, given.hz, scans, given.lateness, given.late))
+    first, *lines = text.splitlines(keepends=True)
+    feed.push([HEADER, first])
+    come = np.arange(len(lines)) / (given.tracks * given.hz)
+    answered, now, place, save = np.empty(len(lines)), 0.0, 0, 5.0
+    while place < len(lines):
+        now = max(now, come[place])
+        end = min(int(np.searchsorted(come, now, side="right")), place + MOST)
+        begin = time.thread_time()
+        feed.push(lines[place:end])
+        if now > save and not given.no_state:
+            LiveState.of(feed, 0)
+            save = now + max(5.0, (time.thread_time() - begin) / 0.005)
+        now += time.thread_time() - begin
+        answered[place:end], place = now, end
+    found = (answered - come)[come > WARM_UP]
+    return {
+        "answers": len(found),
+        "p50_ms": float(np.quantile(found, 0.5) * 1e3),
+        "p99_ms": float(np.quantile(found, 0.99) * 1e3),
+        "max_ms": float(found.max() * 1e3),
+        "memory_mb": [_resident(os.getpid())],
+        "load_average": os.getloadavg(),
+        "said": "by processor time, without pipes",
+    }
 
 
 # -------------------------------------------------------------------- kill -9
