@@ -5,7 +5,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from test_documentation import ROOT, blocks, shown_commands
+from test_documentation import ROOT, WALK, blocks
 from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
@@ -30,7 +30,7 @@ def run(tmp_path, monkeypatch):
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
 def test_the_guide_of_certificates(run):
     page = ROOT / "docs" / "certify.md"
-    commands = list(shown_commands(page))
+    commands = list(WALK["commands"](page.read_text()))
     assert len(commands) >= 8
     for words, expected in commands:
         printed = run(words)
@@ -50,7 +50,7 @@ def test_the_guide_of_certificates(run):
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
 def test_the_guide_of_tuning(run):
     """A search of a few trials stands for those of the page, so the numbers are others."""
-    commands = list(shown_commands(ROOT / "docs" / "tune.md"))
+    commands = list(WALK["commands"]((ROOT / "docs" / "tune.md").read_text()))
     assert len([words for words, _ in commands if " tune " in words]) >= 3
     for words, expected in commands:
         tunes = words.startswith(".venv/bin/fuzzytrack tune")
