@@ -52,6 +52,7 @@ def test_every_option_of_every_command_is_described(reference, sections):
         ("track", ["`--gate` `K|auto|none`", ": .*prediction. Default: `auto` \\(20\\)."]),
         ("track", ["`--id` `COL`", ": Column that identifies the track. Default: one track."]),
         ("track", ["`--compile`, `--no-compile`", ": .* Default: `--compile`."]),
+        ("track", ["`--time` `COL`", ": Column of time .* Default: t, time…"]),
         ("track", ["`--stale`", ": Take a position that repeats as a missed plot."]),
         ("track", ["`--plugin` `FILE.py`", ": Load plug-ins from a script; may be repeated."]),
         ("track", ["`--valid` `COL=LOW:HIGH`", ": .* missed plots. May be repeated."]),

@@ -77,7 +77,8 @@ def told(parameter):
         return text if parameter.param_type_name == "argument" else f"{text} Required."
     written = DEFAULT.findall(help)
     if written and written[0][0] == "default":
-        return f"{text} Default: {marked(written[0][1])}."
+        default = marked(written[0][1])
+        return f"{text} Default: {default}{'' if default.endswith('…') else '.'}"
     if parameter.default is None or parameter.default is False:
         return text
     default = parameter.default
