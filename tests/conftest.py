@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import os
+import sys
 import threading
 
 import pytest
@@ -12,6 +13,15 @@ _UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeatable", _UNTIMED, derandomize=True, max_examples=50)
 settings.register_profile("free", _UNTIMED, derandomize=False, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
+
+
+@pytest.fixture(autouse=True)
+def no_figures_are_left():
+    """Which tests run before one in the same process depends on the number of processes."""
+    yield
+    plt = sys.modules.get("matplotlib.pyplot")
+    if plt is not None:
+        plt.close("all")
 
 
 class _Pause:
