@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from zlib import crc32
 
+import numpy as np
+
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.decoder import joined_cells
@@ -32,6 +34,8 @@ __all__ = ["FEED", "LiveFeed"]
 #: Name of a feed, for messages.
 FEED = "the feed"
 
+# Greatest time and standard deviation (s, m); 30,000 years, and six astronomical units.
+_MOST = 1e12
 # Lines that may come before the first one with a place on earth, about which all others are.
 _HELD = 10_000
 _NO_NOISE = "the noise of plots is not estimated from a feed; `sigma` gives it"
@@ -236,6 +240,8 @@ class LiveFeed:
             cells, unit = joined_cells(table, columns), self._tables.units.get(columns.time)
             clock = Clock.of(cells, unit=said.time_unit, name=columns.time, unit_of_name=unit)
             clock.seconds(cells, table.rows, FEED, columns.time)
+            if abs(clock.origin) > _MOST * 1e9:
+                raise DataError(f"{FEED}: row {number}: a time beyond {_MOST:g} s")
         except ValueError as error:
             self._leave_out(number, str(error))
             return False
@@ -343,7 +349,22 @@ class LiveFeed:
             return [*self._pieces(texts[:half], first), *self._pieces(texts[half:], first + half)]
         self.read.unnamed += found.unnamed
         self.read.impossible.update(found.impossible)
+        piece = self._within_reason(piece)
         return [piece] if len(piece) else []
+
+    def _within_reason(self, piece: Piece) -> Piece:
+        """Plots without those whose numbers would end the run, since they cannot be squared."""
+        times = np.abs(piece.time)
+        bad = (times > _MOST) | ((times < 1 / _MOST) & (times > 0.0))
+        if piece.sigma is not None:
+            deviations = np.nan_to_num(piece.sigma, nan=1.0)
+            bad |= ((deviations > _MOST) | (deviations < 1 / _MOST)).any(axis=1)
+        if not bad.any():
+            return piece
+        for row in piece.rows[bad].tolist():
+            what = f"a time or a standard deviation beyond {_MOST:g}, or below {1 / _MOST:g}"
+            self._leave_out(row, f"{FEED}: row {row}: {what}")
+        return piece.take(~bad)
 
 
 def _check_reading(reading: Reading) -> None:

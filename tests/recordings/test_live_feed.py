@@ -57,6 +57,15 @@ def test_bytes_that_are_no_text_are_a_faulty_line():
     assert told == ["the feed: row 3: byte 0xff is not UTF-8; left out"]
 
 
+def test_numbers_that_no_tracker_can_square_do_not_end_a_run():
+    told = []
+    feed = a_feed("kalman-cv:sigma_v=1", told=told, sigma="s")
+    text = "t,x,s\n1e200,1,1\n0,1,1\n1e-300,2,1\n1,2,1e200\n2,3,1e-200\n3,1e300,1\n4,5,1\n"
+    assert [row[0] for row in pushed(feed, text)] == ["0", "3", "4"]
+    assert feed.faults.counts == {"faulty": 4}
+    assert told == ["the feed: row 2: a time beyond 1e+12 s; left out"]
+
+
 def test_a_byte_order_mark_is_no_part_of_a_name():
     feed = a_feed()
     assert feed.push([b"\xef\xbb\xbft,x\n", b"0,1\n"]).startswith(b"0,1.0")
