@@ -28,7 +28,7 @@ from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import read_recording, recording_files
 from fuzzytrack.plurals import counted
-from fuzzytrack.recordings.tracking import DEFAULT_TRACKER
+from fuzzytrack.recordings.preparation import DEFAULT_TRACKER
 from fuzzytrack.recordings.used_plots import read_used_plots
 from fuzzytrack.testbed.comparison import Comparison, compare_tracks
 from fuzzytrack.testbed.marks import BEST, WORSE

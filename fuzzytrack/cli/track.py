@@ -30,14 +30,9 @@ from fuzzytrack.io.plot_files import ROWS
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Track
 from fuzzytrack.io.track_formats import check_geo_tracks, is_geo
+from fuzzytrack.recordings.preparation import DEFAULT_TRACKER, PreparedPlots, prepare
 from fuzzytrack.recordings.totals import Totals
-from fuzzytrack.recordings.tracking import (
-    DEFAULT_TRACKER,
-    PreparedPlots,
-    TrackedRecording,
-    prepare,
-    track_recording,
-)
+from fuzzytrack.recordings.tracking import TrackedRecording, track_recording
 from fuzzytrack.trackers.catalog import as_lane_tracker, make_tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 

@@ -33,11 +33,11 @@ from fuzzytrack.recordings.live_answers import (
     taken,
 )
 from fuzzytrack.recordings.live_faults import LiveFaults
+from fuzzytrack.recordings.preparation import PreparedPlots
 from fuzzytrack.recordings.recent_rows import RecentRows, Row, piece_of_rows, row_of
 from fuzzytrack.recordings.restarts import Restarts
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.track_table import TrackRows
-from fuzzytrack.recordings.tracking import PreparedPlots
 from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.compilation import announce
 
@@ -94,7 +94,7 @@ class LiveTracks:
     --------
     >>> from fuzzytrack.io.piece import Piece
     >>> from fuzzytrack.io.reading import Reading
-    >>> from fuzzytrack.recordings.tracking import prepare
+    >>> from fuzzytrack.recordings.preparation import prepare
     >>> first = ([0.0, 1.0], [[0.0], [10.0]])        # tells how many axes there are
     >>> prepared = prepare(first, "fixed:alpha=0.5:beta=0.2", Reading())
     """

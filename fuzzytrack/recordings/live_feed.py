@@ -24,7 +24,7 @@ from fuzzytrack.io.times import Clock
 from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.live import LiveTracks, check_rules
 from fuzzytrack.recordings.live_faults import LiveFaults
-from fuzzytrack.recordings.tracking import prepared
+from fuzzytrack.recordings.preparation import prepare_surveyed
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_lane_tracker
 from fuzzytrack.trackers.origin import digest_of
@@ -280,7 +280,9 @@ class LiveFeed:
         assert self._tables is not None
         files = PlotFiles.of((self._tables,), self.reading).with_survey(Survey())
         known = files.decoder.noise_is_known or self._named is not None
-        ready = prepared(files, Survey(missing="" if known else _NO_NOISE), self._named, self.gate)
+        ready = prepare_surveyed(
+            files, Survey(missing="" if known else _NO_NOISE), self._named, self.gate
+        )
         ready.findings.note(files.notes)
         self.tracks = LiveTracks(
             ready, lateness=self.lateness, forget=self.forget, faults=self.faults

@@ -17,9 +17,9 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Recording, Track, read_recording
 from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.judging import GateWidth, judge_of
+from fuzzytrack.recordings.preparation import DEFAULT_TRACKER, inputs_of, noise_differs, suited
 from fuzzytrack.recordings.ragged import run_judged_tracks
 from fuzzytrack.recordings.restarts import divided
-from fuzzytrack.recordings.tracking import DEFAULT_TRACKER, inputs_of, noise_differs, suited
 from fuzzytrack.recordings.truth import read_truth
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress

@@ -18,7 +18,7 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.clock_lag import ClockLag, fitted_lag
 from fuzzytrack.recordings.judging import GateWidth
-from fuzzytrack.recordings.tracking import suited
+from fuzzytrack.recordings.preparation import suited
 from fuzzytrack.recordings.truth import true_positions
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
 from fuzzytrack.reprs import summary

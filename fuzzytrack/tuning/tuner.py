@@ -19,7 +19,7 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.judging import GateWidth
-from fuzzytrack.recordings.tracking import suited
+from fuzzytrack.recordings.preparation import suited
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
 from fuzzytrack.tasks import Progress, run_tasks

@@ -18,10 +18,10 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.table import Words
 from fuzzytrack.recordings.live import LiveTracks
 from fuzzytrack.recordings.live_answers import REVISION
+from fuzzytrack.recordings.preparation import prepare_surveyed
 from fuzzytrack.recordings.restarts import Restarts
 from fuzzytrack.recordings.streaming import OpenTracks
 from fuzzytrack.recordings.track_table import TrackRows
-from fuzzytrack.recordings.tracking import prepared
 
 FIXED = "fixed:alpha=0.5:beta=0.3"
 
@@ -30,7 +30,7 @@ def plots_of(tracker=FIXED, **options):
     """Prepared plots of two axes with an identity."""
     source = FrameSource.of({"time": [0.0], "id": ["a"], "x": [0.0], "y": [0.0]})
     reading = Reading.of(id="id", **options)
-    return prepared(PlotFiles.of((source,), reading), Survey(), tracker)
+    return prepare_surveyed(PlotFiles.of((source,), reading), Survey(), tracker)
 
 
 def piece_of(rows):

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.large_jobs import LargeJob
-from fuzzytrack.recordings.tracking import prepare, track_recording
+from fuzzytrack.recordings.preparation import prepare
+from fuzzytrack.recordings.tracking import track_recording
 from fuzzytrack.trackers.catalog import make_tracker
 
 pq = pytest.importorskip("pyarrow.parquet")

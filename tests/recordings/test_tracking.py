@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fuzzytrack as ft
-from fuzzytrack.recordings.tracking import DEFAULT_TRACKER, DEFAULT_WITHOUT_NOISE
+from fuzzytrack.recordings.preparation import DEFAULT_TRACKER, DEFAULT_WITHOUT_NOISE
 from fuzzytrack.trackers.catalog import make_tracker
 
 
