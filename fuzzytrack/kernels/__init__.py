@@ -25,6 +25,9 @@ what may change with any release:
 - ``numba.core.typeconv.castgraph.Conversion`` and ``lower_constant``, in `slots`: a type whose
   constants are read from memory. When they change, importing it fails, or compiling with a
   `TypingError`.
+- The options ``no_cpython_wrapper`` and ``no_cfunc_wrapper`` of ``njit``, which its documentation
+  leaves out: helpers that only compiled code calls are compiled without ways in for others. When
+  they change, compiling fails with a `KeyError`.
 - ``_Intrinsic._defn``, in `rebuild`: the content of an intrinsic.
 
 So pyproject.toml allows only versions of Numba that were tried. To try another one, install it, run
