@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Sequence
 from itertools import pairwise
@@ -90,10 +89,9 @@ def compare(
     if trackers is None and not used.has_sigma:
         say_aside(f"note: compared without {DEFAULT_TRACKER}, which needs the noise of the plots")
         del chosen[DEFAULT_TRACKER]
-    apart = truth is not None and os.path.exists(truth)
     with progress("comparing") as watch:
         texts = {name: name for name in chosen}
-        found = compare_used(texts, used, fit_lag=apart, seed=seed, progress=watch)
+        found = compare_used(texts, used, seed=seed, progress=watch)
     if json:
         told = {"file": file, "truth": truth, **noise_json(used.decoder)}
         print_json({**told, **found.to_json_dict()})

@@ -116,10 +116,7 @@ def _some(tracks: Sequence[Track]) -> list[Track]:
 
 def _distances(tracks: Sequence[Track], true: Recording, lag: float) -> Array:
     """Plots minus the truth at a lag, shape (n, n_axes); of plots for which the truth is known."""
-    each = [
-        track.plots - true_positions(replace(track, time=track.time - lag), true)
-        for track in tracks
-    ]
+    each = [track.plots - true_positions(track, true, lag) for track in tracks]
     all_of_them = np.concatenate(each)
     return np.asarray(all_of_them[~np.isnan(all_of_them).any(axis=1)])
 
@@ -150,8 +147,7 @@ def _error(
     """Standard error of a lag (s), and how far it moves the truth (m)."""
     ahead = np.concatenate(
         [
-            true_positions(replace(track, time=track.time - lag + step), true)
-            - true_positions(replace(track, time=track.time - lag - step), true)
+            true_positions(track, true, lag - step) - true_positions(track, true, lag + step)
             for track in tracks
         ]
     )

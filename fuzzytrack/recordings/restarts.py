@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.arrays import Mask
+from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.judged import Judged
@@ -70,7 +71,7 @@ class Restarts:
 
 
 def divided(
-    tracks: Sequence[Track], judged: Sequence[Judged]
+    tracks: Sequence[Track], judged: Sequence[Judged], findings: Findings
 ) -> tuple[tuple[Track, ...], tuple[TrackResult, ...]]:
     """Divide tracks where they start again, and number the segments of each identity anew.
 
@@ -80,9 +81,13 @@ def divided(
         The segments of an identity in order.
     judged : sequence of Judged
         Result of each.
+    findings : Findings
+        Gets the counts of plots that were rejected and of tracks that started again.
     """
     parts, results = [], []
     for track, one in zip(tracks, judged, strict=True):
+        findings.rejected += int(one.rejected.sum())
+        findings.restarts += int(one.begins.sum())
         edges = [0, *np.flatnonzero(one.begins).tolist(), len(track.time)]
         for start, end in pairwise(edges):
             rows = slice(start, end)

@@ -131,9 +131,7 @@ def _run(
     if judge is None:
         return tuple(tracks), tuple(run_tracks(tracker, given, sigma, progress, **common))
     judged = run_judged_tracks(tracker, given, sigma, judge, progress, **common)
-    prepared.findings.rejected += sum(int(one.rejected.sum()) for one in judged)
-    prepared.findings.restarts += sum(int(one.begins.sum()) for one in judged)
-    return divided(tracks, judged)
+    return divided(tracks, judged, prepared.findings)
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,7 +55,7 @@ def read_truth(truth: str | os.PathLike[str], plots: PlotFiles) -> Recording:
     return read_recording(_like(PlotFiles.of(inputs, replace(reading, description=said)), plots))
 
 
-def true_positions(track: Track, true: Recording) -> Array:
+def true_positions(track: Track, true: Recording, lag: float = 0.0) -> Array:
     """True positions at the times of a track, interpolated linearly.
 
     Parameters
@@ -64,6 +64,8 @@ def true_positions(track: Track, true: Recording) -> Array:
         The plots of one identity.
     true : Recording
         From `read_truth`.
+    lag : float
+        Time by which the clock of the track is late against that of the truth (s).
 
     Returns
     -------
@@ -85,11 +87,12 @@ def true_positions(track: Track, true: Recording) -> Array:
         raise DataError(
             f"{true.file}: has {other.plots.shape[1]} axes, the plots have {track.plots.shape[1]}"
         )
+    time = track.time - lag
     period = None if true.decoder is None else true.decoder.period
     if period is None:
-        return _interpolated(track.time, other.time, other.plots)
+        return _interpolated(time, other.time, other.plots)
     series = unwrapped(other.plots[:, 0], period=period)[:, None]
-    found = _interpolated(track.time, other.time, series)
+    found = _interpolated(time, other.time, series)
     turns = np.round((track.plots - found) / period)
     return np.asarray(found + period * np.where(np.isnan(turns), 0.0, turns))
 

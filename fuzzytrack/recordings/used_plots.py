@@ -44,6 +44,9 @@ class UsedPlots:
         How rows became plots.
     true : Recording or None
         The truth, for `fuzzytrack.recordings.truth.true_positions`.
+    true_has_own_clock : bool
+        Whether the clocks of plots and truth may differ: those of two files may, and columns beside
+        the plots have the time of these.
     findings : Findings
         Faults that were put right, and notes.
     """
@@ -52,6 +55,7 @@ class UsedPlots:
     tracks: tuple[Track, ...]
     decoder: PlotDecoder
     true: Recording | None
+    true_has_own_clock: bool
     findings: Findings
 
     def __repr__(self) -> str:
@@ -111,7 +115,8 @@ def read_used_plots(
         tracks = _gated(tracks, decoder, judge, findings)
     true = None if truth is None else read_truth(truth, files)
     used = tuple(_with_noise(track, decoder) for track in tracks)
-    return UsedPlots(files.names[0], used, decoder, true, findings)
+    own_clock = truth is not None and os.path.exists(truth)
+    return UsedPlots(files.names[0], used, decoder, true, own_clock, findings)
 
 
 def _gated(
@@ -129,13 +134,11 @@ def _gated(
         sigmas=sigmas or None,
         keep=("predicted",),
     )
-    findings.rejected += sum(int(one.rejected.sum()) for one in judged)
-    findings.restarts += sum(int(one.begins.sum()) for one in judged)
     used = [
         replace(track, plots=np.where(one.rejected[:, None], np.nan, track.plots))
         for track, one in zip(tracks, judged, strict=True)
     ]
-    return divided(used, judged)[0]
+    return divided(used, judged, findings)[0]
 
 
 def _with_noise(track: Track, decoder: PlotDecoder) -> Track:

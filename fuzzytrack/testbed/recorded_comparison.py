@@ -31,7 +31,7 @@ from fuzzytrack.testbed.innovations import (
     expected_outside,
     positions_of,
 )
-from fuzzytrack.testbed.marks import best_of, marks_of
+from fuzzytrack.testbed.marks import WORSE, best_of, marks_of
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import Trackers, as_trackers
@@ -227,7 +227,7 @@ class RecordedComparison:
             given["lag"]["taken_off"] = self.lag.taken_off
         scores = given.pop("scores")
         for score, mark in zip(scores, self.marks, strict=True):
-            score["worse_than_plots"] = "worse" in mark
+            score["worse_than_plots"] = WORSE in mark
         return {
             **given,
             "expected_outside": self.expected_outside,
@@ -299,8 +299,6 @@ def compare_recorded(
     return compare_used(
         texts,
         used,
-        # Columns beside the plots have the clock of the plots.
-        fit_lag=truth is not None and os.path.exists(truth),
         seed=seed,
         progress=None if progress is None else part(progress, 0.2, 1.0),
     )
@@ -310,7 +308,6 @@ def compare_used(
     trackers: Mapping[str, Tracker | str],
     used: UsedPlots,
     *,
-    fit_lag: bool = False,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> RecordedComparison:
@@ -320,8 +317,6 @@ def compare_used(
     ----------
     trackers : mapping of str to Tracker or str
     used : UsedPlots
-    fit_lag : bool
-        Whether the clocks of plots and truth may differ by a constant time.
     seed, progress
         As for `compare_recorded`.
 
@@ -330,7 +325,9 @@ def compare_used(
     DataError, ValueError
         As `compare_recorded`.
     """
-    lag = fitted_lag(used.tracks, used.true) if fit_lag and used.true is not None else None
+    lag = None
+    if used.true is not None and used.true_has_own_clock:
+        lag = fitted_lag(used.tracks, used.true)
     rows = _Rows.of(used, 0.0 if lag is None else lag.taken_off)
     runs = {}
     made = as_trackers(trackers)
@@ -403,7 +400,7 @@ class _Rows:
             if used.true is None:
                 truth.append(np.full(track.plots.shape, np.nan))
             else:
-                truth.append(true_positions(replace(track, time=track.time - lag), used.true))
+                truth.append(true_positions(track, used.true, lag))
         return cls(
             np.concatenate([track.plots for track in tracks]),
             np.concatenate(before),
