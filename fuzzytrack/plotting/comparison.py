@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.plotting import _figures as shared
 
-__all__ = ["plot_comparison"]
+__all__ = ["plot_comparison", "plot_estimates"]
 
 # Part of a row that its points are spread over.
 SPREAD = 0.7
@@ -66,8 +66,8 @@ def plot_comparison(
     Notes
     -----
     Points are not joined, since there is nothing between two categories. In rows of trackers the
-    name of the least number is bold. The scale begins at zero
-    where no number is negative; it is logarithmic where numbers are far apart.
+    name of the least number is bold. The scale begins at zero where no number is negative; it is
+    logarithmic where numbers are far apart.
     """
     if not isinstance(values, Mapping) or not values:
         raise ValueError("values: must be a mapping from labels to arrays, at least one")
@@ -92,17 +92,7 @@ def plot_comparison(
             row, places, color=color, marker=marker, markersize=6, linestyle="none", label=label
         )
     for label, value in (reference or {}).items():
-        plane.axvline(value, color=shared.GRAY, linestyle="--", linewidth=1.2, zorder=1)
-        plane.text(
-            value,
-            1.01,
-            label,
-            transform=blended_transform_factory(plane.transData, plane.transAxes),
-            ha="center",
-            va="bottom",
-            fontsize=9,
-            color="0.3",
-        )
+        _draw_reference(plane, label, value)
     _scale(plane, np.concatenate([*points.values(), list((reference or {}).values())]))
     plane.set_yticks(range(len(names)), list(map(_short, names)))
     if categories is None:
@@ -117,6 +107,57 @@ def plot_comparison(
     if categories is not None:
         shared.legend_below(plane)
     return figure, plane
+
+
+def plot_estimates(
+    names: Sequence[str],
+    values: ArrayLike,
+    errors: ArrayLike,
+    *,
+    reference: Mapping[str, float] | None = None,
+    what: str = "RMSE of prediction",
+    ax: Axes | None = None,
+) -> tuple[Figure, Axes]:
+    """Estimates for trackers (m), with two standard errors to either side.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The trackers.
+    values, errors : array_like, shape (n_trackers,)
+        Estimates and their standard errors (m).
+    reference, what, ax
+        As for `plot_comparison`.
+
+    Returns
+    -------
+    figure : Figure
+    ax : Axes
+    """
+    middle, reach = np.asarray(values, np.float64), 2 * np.asarray(errors, np.float64)
+    sides = zip(middle - reach, middle + reach, strict=True)
+    return plot_comparison(
+        dict(zip(names, middle, strict=True)),
+        dict(zip(names, sides, strict=True)),
+        reference=reference,
+        what=what,
+        ax=ax,
+    )
+
+
+def _draw_reference(ax: Axes, label: str, value: float) -> None:
+    """A line to compare points with, named above the axes."""
+    ax.axvline(value, color=shared.GRAY, linestyle="--", linewidth=1.2, zorder=1)
+    ax.text(
+        value,
+        1.01,
+        label,
+        transform=blended_transform_factory(ax.transData, ax.transAxes),
+        ha="center",
+        va="bottom",
+        fontsize=9,
+        color="0.3",
+    )
 
 
 def _short(name: str) -> str:

@@ -99,16 +99,15 @@ def report_pictures(results: Results) -> dict[str, Figure]:
 
 
 def _draw_comparison(results: Results, labels: Sequence[str]) -> Figure:
-    from fuzzytrack.plotting import plot_comparison
+    from fuzzytrack.plotting.comparison import plot_estimates
 
     figure = _figure(2.2 + 0.56 * len(labels))
     quantities: tuple[Quantity, ...] = ("predicted", "filtered")
     for panel, quantity in zip(figure.subplots(2), quantities, strict=True):
-        found, error = results.rmse(quantity), results.rmse_se(quantity)
-        sides = zip((found - 2 * error).tolist(), (found + 2 * error).tolist(), strict=True)
-        plot_comparison(
-            dict(zip(labels, found.tolist(), strict=True)),
-            dict(zip(labels, sides, strict=True)),
+        plot_estimates(
+            labels,
+            results.rmse(quantity),
+            results.rmse_se(quantity),
             reference={"plots": results.measured_rmse},
             what=f"RMSE of {quantity} position",
             ax=panel,

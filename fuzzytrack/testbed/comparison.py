@@ -67,13 +67,11 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_comparison`."""
-        from fuzzytrack.plotting import plot_comparison
+        from fuzzytrack.plotting.comparison import plot_estimates
 
-        found, spread = self.predicted_rmse, 2 * self.predicted_error
-        return plot_comparison(
-            dict(zip(self.names, found, strict=True)),
-            dict(zip(self.names, zip(found - spread, found + spread, strict=True), strict=True)),
-            reference={"plots": self.measured_rmse},
+        plots = {"plots": self.measured_rmse}
+        return plot_estimates(
+            self.names, self.predicted_rmse, self.predicted_error, reference=plots
         )[0]
 
     def _repr_html_(self) -> str:

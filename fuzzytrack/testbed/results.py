@@ -114,14 +114,10 @@ class Results:
 
     def plot(self) -> Figure:
         """Picture of the errors of prediction, see `fuzzytrack.plotting.plot_comparison`."""
-        from fuzzytrack.plotting import plot_comparison
+        from fuzzytrack.plotting.comparison import plot_estimates
 
-        found, spread = self.rmse(), 2 * self.rmse_se()
-        return plot_comparison(
-            dict(zip(self.names, found, strict=True)),
-            dict(zip(self.names, zip(found - spread, found + spread, strict=True), strict=True)),
-            reference={"plots": self.measured_rmse},
-        )[0]
+        plots = {"plots": self.measured_rmse}
+        return plot_estimates(self.names, self.rmse(), self.rmse_se(), reference=plots)[0]
 
     def _repr_html_(self) -> str:
         """Table of errors, for notebooks."""
