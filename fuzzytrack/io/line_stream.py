@@ -55,10 +55,6 @@ class LineStream:
             return None
         return [self._lines.popleft() for _ in range(min(len(self._lines), _LINES))]
 
-    def put_back(self, lines: list[bytes]) -> None:
-        """Make lines the next ones that are taken."""
-        self._lines.extendleft(reversed(lines))
-
     def look_ahead(self, most: int) -> bool:
         """Read on without waiting, up to so many lines; whether the end is among them."""
         while not self.ended and len(self._lines) < most and self._is_ready(0.0):

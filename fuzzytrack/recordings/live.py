@@ -92,11 +92,19 @@ class LiveTracks:
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from fuzzytrack.io import Reading
     >>> from fuzzytrack.io.piece import Piece
-    >>> from fuzzytrack.io.reading import Reading
+    >>> from fuzzytrack.io.table import Words
     >>> from fuzzytrack.recordings.preparation import prepare
-    >>> first = ([0.0, 1.0], [[0.0], [10.0]])        # tells how many axes there are
-    >>> prepared = prepare(first, "fixed:alpha=0.5:beta=0.2", Reading())
+    >>> first = ([0.0], [[0.0, 0.0]])  # tells how many axes there are
+    >>> tracks = LiveTracks(prepare(first, "fixed:alpha=0.5:beta=0.2", Reading()))
+    >>> names = Words(("a",), np.array([0, 0]))
+    >>> plots = np.array([[0.0, 0.0], [10.0, 5.0]])
+    >>> piece = Piece(names, np.array([0.0, 1.0]), plots, rows=np.arange(2))
+    >>> answers = tracks.push(piece)
+    >>> answers.columns["x"].tolist(), len(tracks)
+    ([0.0, 10.0], 1)
     """
 
     def __init__(
