@@ -26,6 +26,11 @@ __all__ = ["REFUSED", "Trials"]
 #: Loss of numbers that make no tracker, or one that does not predict all plots.
 REFUSED = 1e3
 
+# A rule table is compiled to sums whose form depends on the order of its levels. If trackers of a
+# family differ so in form, each is compiled by itself, which takes as long as running so many
+# coordinates in plain Python, and memory; after so many of them the others run there.
+_COORDINATES, _FORMS = 200_000, 24
+
 
 @dataclass(frozen=True, eq=False)
 class Trials:
@@ -66,6 +71,8 @@ class Trials:
         if not self.compiled:
             return [self._sums(tracker) for tracker in made]
         code, n_axes, found = _shared_code(candidates.title), self.data.n_axes, []
+        if code.compilations > _FORMS and self.data.coordinates < _COORDINATES:
+            return [self._sums(tracker) for tracker in made]
         if code.is_empty:
             # One code for all that differs between these; a later surprise is compiled anew.
             for tracker in made:

@@ -11,9 +11,10 @@ import fuzzytrack as ft
 from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path
 from fuzzytrack.gains import kalata
 from fuzzytrack.trackers.catalog import make_tracker
-from fuzzytrack.tuning import TuningData, TuningTrack, tuner
+from fuzzytrack.tuning import TuningData, TuningTrack, trial, tuner
 from fuzzytrack.tuning.criteria import CRITERIA, RmsError
 from fuzzytrack.tuning.folds import Folds
+from fuzzytrack.tuning.specifications import specification
 from fuzzytrack.tuning.trial import REFUSED, Trials
 from fuzzytrack.tuning.tuned import with_head
 
@@ -312,3 +313,21 @@ def test_the_likelihood_finds_the_noise_of_plots_and_target():
         ft.tune(bare, "fixed", criterion="likelihood")
     with pytest.raises(ValueError, match="criterion: unknown 'mse'; one of rms, likelihood"):
         ft.tune(bare, "fixed", criterion="mse")
+
+
+@pytest.mark.untraced
+def test_trackers_of_many_forms_run_in_plain_python(monkeypatch):
+    """Each form is compiled by itself, and a rule table has one for each order of its levels."""
+    data = random_walk(3, 90, 0.5)
+    family = specification("fixed", None, 1.0)
+    run = Trials(data, tuner.make_folds(data, 3, 0), RmsError(), compiled=True)
+    trials = [(0.5, 0.2), (0.4, 0.1)]
+    compiled = run.sums(family, trials)
+    assert trial._shared_code(family.title).compilations >= 1
+    monkeypatch.setattr(trial, "_FORMS", 0)
+
+    def refused(*args):
+        raise AssertionError("nothing more is compiled")
+
+    monkeypatch.setattr(trial, "sharing_code", refused)
+    np.testing.assert_array_equal(run.sums(family, trials), compiled)
