@@ -92,6 +92,8 @@ def follow(
         As the other commands.
     """
     _check(files, output, options)
+    if sys.stdin is None:
+        raise ValueError("--follow: reads standard input, which is closed; pipe the feed into it")
     feed = LiveFeed(
         reading,
         tracker,

@@ -9,7 +9,7 @@ from collections import deque
 __all__ = ["LineStream"]
 
 # Bytes that are read at a time, lines that are given at a time, and bytes of a line at most. More
-# lines at once would have them wait for one another.
+# lines at once would have them wait for one another; what is longer is no plot.
 _READ, _LINES, _LONGEST = 1 << 16, 500, 1 << 20
 
 
@@ -72,10 +72,9 @@ class LineStream:
                 self._lines.append(self._rest + b"\n")
                 self._rest = b""
             return
-        lines = (self._rest + part).split(b"\n")
-        self._rest = lines.pop()
-        self._lines.extend([line + b"\n" for line in lines])
-        if len(self._rest) > _LONGEST:
-            # No plot; what comes of it is left out as faulty.
+        first, *others = part.split(b"\n")
+        # What comes of a line that is cut off is faulty, and the same however it was read.
+        self._rest = (self._rest + first)[: _LONGEST + 1]
+        for other in others:
             self._lines.append(self._rest + b"\n")
-            self._rest = b""
+            self._rest = other

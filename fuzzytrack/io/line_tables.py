@@ -135,6 +135,8 @@ class JsonLines:
         self.units: dict[str, str] = {}
         self._rows = list(lines[begins:])
         first = self._object(lines[begins], begins + 1)
+        for name in first:
+            self._cell(name, begins + 1, "name")
         self.types = dict.fromkeys(checked_names(list(first), file), "text")
         self.numbers = frozenset(
             name for name, value in first.items() if isinstance(value, int | float)
@@ -182,6 +184,11 @@ class JsonLines:
 
     def _cell(self, value: Any, row: int, name: str) -> str:
         if isinstance(value, str):
+            if not (value.isascii() or _is_text(value)):
+                raise DataError(
+                    f"{self.file}: row {row}, column {name}: {json.dumps(value)[:40]} has half a "
+                    "pair of surrogates; expected text"
+                )
             return value
         if value is None:
             return ""
@@ -191,3 +198,12 @@ class JsonLines:
             f"{self.file}: row {row}, column {name}: {json.dumps(value)[:40]}; expected a number, "
             "a text or null"
         )
+
+
+def _is_text(value: str) -> bool:
+    """Whether a text can be written; JSON can name halves of characters, which cannot."""
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        return False
+    return True

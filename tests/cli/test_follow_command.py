@@ -174,6 +174,14 @@ def test_what_needs_a_whole_recording_is_refused_in_one_line(options, what, foll
     assert len(said.splitlines()) == 1
 
 
+def test_a_standard_input_that_is_closed_is_told_of_in_one_line(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "stdin", None)
+    with pytest.raises(SystemExit) as ended:
+        app(["track", "-", "--follow", *FIXED])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.startswith("error: --follow: reads standard input, which is")
+
+
 @pytest.mark.parametrize("option", [["--lateness", "1"], ["--state", "s"], ["--no-compile"]])
 def test_options_of_a_live_run_are_refused_without_follow(fails, plots, option):
     assert "give --follow as well" in fails("track", plots, *option)

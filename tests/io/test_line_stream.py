@@ -47,11 +47,18 @@ def test_to_look_ahead_takes_nothing(pipe):
     assert stream.take(5.0) == [b"a\n", b"b\n"]
 
 
-def test_a_line_without_end_is_cut(pipe):
+@pytest.mark.parametrize("ends", ["\n0,a\n", "\n0,a"])
+def test_of_a_line_that_is_too_long_nothing_but_its_beginning_is_kept(pipe, ends):
     stream, end = pipe
-    for _ in range(20):
+    for _ in range(40):
         os.write(end, b"x" * 60_000)
-        stream.look_ahead(10)
-    (cut,) = stream.take(5.0)
-    assert len(cut) > 1 << 20
+        assert not stream.look_ahead(10)
+    # The end of it would be a plot.
+    os.write(end, f",7,b{ends}".encode())
     os.close(end)
+    stream.look_ahead(10)
+    cut, after = stream.take(5.0)
+    assert (1 << 20) < len(cut) < (1 << 20) + 10
+    assert set(cut) == set(b"x\n")
+    assert after == b"0,a\n"
+    assert stream.take() is None

@@ -78,6 +78,7 @@ def test_a_byte_order_mark_is_no_part_of_a_name():
         ('{"t": 1, "x": true}', "column x: true"),
         ('{"t": 1, "x": "a"}', "column x: 'a'"),
         ('{"x": 1}', "column t: an empty cell; expected a time"),
+        ('{"t": 1, "x": "\\ud800"}', 'column x: "\\ud800" has half a pair of surrogates'),
         ("[1, 2]", "expected an object of JSON"),
         ('{"t": 1', "not JSON"),
         ('{"t": 1, "x": 1}, {"t": 2, "x": 1}', "not JSON"),
@@ -91,6 +92,11 @@ def test_a_line_that_is_no_such_object_is_left_out(line, why):
     rows = [json.loads(row) for row in answers.splitlines()]
     assert [(row["t"], row["x"]) for row in rows] == [(0, 0.0), (5, 10.0)]
     assert why in told[0]
+
+
+def test_a_name_that_cannot_be_written_is_refused():
+    with pytest.raises(DataError, match="half a pair"):
+        a_feed().push([b'{"t": 0, "x": 1, "\\udfff": 2}\n'])
 
 
 def test_a_cell_does_not_go_on_in_the_next_line():
