@@ -46,7 +46,9 @@ def _lag_sentence(found: RecordedComparison) -> str:
     lag = with_error(found.lag.lag, found.lag.error)
     if not found.lag.taken_off:
         return f"clock: plots and truth agree; the fitted lag is {lag} s."
-    return f"clock: the plots are {lag} s behind the truth (fitted), which was taken off."
+    size = with_error(abs(found.lag.lag), found.lag.error)
+    where = "behind" if found.lag.lag > 0 else "ahead of"
+    return f"clock: the plots are {size} s {where} the truth (fitted), which was taken off."
 
 
 def _text(change: RmsChange | None) -> str:
@@ -124,15 +126,18 @@ def _print_consistency(found: RecordedComparison) -> None:
     rows = [
         [
             score.name,
-            f"{score.whiteness.correlation:+.2f}",
+            _or_dash(score.whiteness.correlation, "{:+.2f}"),
             _share(score.outside),
-            "–" if math.isnan(score.log_likelihood) else f"{score.log_likelihood:.3f}",
+            _or_dash(score.log_likelihood, "{:.3f}"),
         ]
         for score in found.scores
     ]
     best = found.scores[best_of(found.errors) or 0]
     reach = best.whiteness.reach
-    rows += [[], ["expected", f"± {reach:.2f}", _share(found.expected_outside), "largest"]]
+    rows += [
+        [],
+        ["expected", _or_dash(reach, "± {:.2f}"), _share(found.expected_outside), "largest"],
+    ]
     print_table(["innovations", "correlation", "outside 3σ", "log-likelihood"], rows)
     paragraph(
         "correlation: of each innovation with the one before. Above the range gains are too small, "
@@ -149,4 +154,8 @@ def _print_consistency(found: RecordedComparison) -> None:
 
 
 def _share(share: float) -> str:
-    return "–" if math.isnan(share) else f"{100 * share:.1f} %"
+    return _or_dash(100 * share, "{:.1f} %")
+
+
+def _or_dash(value: float, form: str) -> str:
+    return "–" if math.isnan(value) else form.format(value)

@@ -24,6 +24,8 @@ _LEAST, _MOST = 20, 4000
 _CERTAIN, _ALIKE = 0.2, 1.05
 # Standard errors within which a lag may be chance.
 _CHANCE = 3.0
+# How finely a lag is looked for, as a share of the usual time between plots; no error is smaller.
+_FINEST = 5e-5
 _STEADY = "the targets move too steadily to tell it from an offset"
 
 
@@ -96,7 +98,7 @@ def fitted_lag(tracks: Sequence[Track], true: Recording) -> ClockLag:
     best = int(np.nanargmin(sizes))
     if best in (0, len(sizes) - 1) or np.isnan(sizes[best - 1 : best + 2]).any():
         return ClockLag(0.0, math.nan, f"no lag within ±{window:.3g} s fits best")
-    lag = _refined(tracks, true, float(lags[best]), interval / 2)
+    lag = _refined(tracks, true, float(lags[best]), interval)
     size = _spread(_distances(tracks, true, lag))
     away = np.abs(lags - lag) > 1.5 * interval
     apart = away[1:-1] & (sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] <= sizes[2:])
@@ -105,7 +107,7 @@ def fitted_lag(tracks: Sequence[Track], true: Recording) -> ClockLag:
     error, moved = _error(tracks, true, lag, interval / 4)
     if not moved < _CERTAIN * size:
         return ClockLag(0.0, math.nan, _STEADY)
-    return ClockLag(lag, error)
+    return ClockLag(lag, max(error, _FINEST * interval))
 
 
 def _some(tracks: Sequence[Track]) -> list[Track]:
@@ -128,15 +130,15 @@ def _spread(distances: Array) -> float:
     return float(np.sqrt(distances.var(axis=0).sum()))
 
 
-def _refined(tracks: Sequence[Track], true: Recording, lag: float, step: float) -> float:
+def _refined(tracks: Sequence[Track], true: Recording, lag: float, interval: float) -> float:
     """The best lag between two neighbors of one of the first search."""
     from scipy.optimize import minimize_scalar
 
     found = minimize_scalar(
         lambda trial: _spread(_distances(tracks, true, trial)),
-        bounds=(lag - step, lag + step),
+        bounds=(lag - interval / 2, lag + interval / 2),
         method="bounded",
-        options={"xatol": 1e-4 * step},
+        options={"xatol": _FINEST * interval},
     )
     return float(found.x)
 

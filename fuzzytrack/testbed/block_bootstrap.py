@@ -49,7 +49,9 @@ class RmsChange:
 
     @property
     def text(self) -> str:
-        """The change in percent, with its interval if it has one."""
+        """The change in percent, with its interval if it has one; a dash for NaN."""
+        if math.isnan(self.change):
+            return "–"
         middle, low, high = map(_percent, (self.change, self.low, self.high))
         return f"{middle} %" if math.isnan(self.low) else f"{middle} % ({low} to {high})"
 

@@ -73,6 +73,27 @@ def test_with_truth(run, files):
         assert one["worse_than_plots"] == (one["true"]["filtered"] > told["measured_rmse"])
 
 
+def test_a_clock_that_is_ahead_is_said_to_be(run, csv):
+    shape = "".join(f"{k},{50 * math.sin(k / 5)}\n" for k in range(90))
+    truth = "".join(f"{k + 2},{50 * math.sin(k / 5)}\n" for k in range(-40, 150))
+    words = ("--truth", csv("t,x\n" + truth, "truth.csv"), "--trackers", "maneuver", "--sigma", 1)
+    said = run("compare", csv("t,x\n" + shape), *words).stdout
+    (ahead,) = re.findall(r"the plots are (\S+) ± \S+ s ahead of the truth", said)
+    assert float(ahead) == pytest.approx(2, abs=0.01)
+
+
+def test_plots_as_their_own_truth_have_no_lag(run, csv):
+    path = csv("t,x\n" + "".join(f"{k},{50 * math.sin(k / 5)}\n" for k in range(90)))
+    told = run("compare", path, "--truth", path, "--trackers", "maneuver", "--sigma", 1).stdout
+    assert "clock: plots and truth agree" in told
+
+
+def test_a_target_that_stands_still_has_no_nan_in_its_table(run, csv):
+    said = run("compare", csv("t,x\n" + "".join(f"{k},5\n" for k in range(30)))).stdout
+    assert "nan" not in said
+    assert "–" in said
+
+
 def test_a_lag_that_cannot_be_told_is_said(run, csv):
     lines = "t,x\n" + "".join(f"{k},{5 * k + (-1) ** k}\n" for k in range(60))
     truth = csv("t,x\n" + "".join(f"{k},{5 * k}\n" for k in range(-40, 99)), "truth.csv")
