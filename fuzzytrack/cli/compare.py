@@ -4,38 +4,27 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated
 
 import typer
 
 from fuzzytrack.cli import options
+from fuzzytrack.cli.comparison_tables import print_comparison, print_recorded
 from fuzzytrack.cli.noise_words import noise_json
-from fuzzytrack.cli.output import (
-    paragraph,
-    print_json,
-    print_table,
-    progress,
-    say_aside,
-    show,
-    with_error,
-)
+from fuzzytrack.cli.output import print_json, progress, say_aside
 from fuzzytrack.cli.plot_options import number_or, reads_plots
-from fuzzytrack.cli.recorded_table import print_recorded
 from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import read_recording, recording_files
-from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.preparation import DEFAULT_TRACKER
 from fuzzytrack.recordings.used_plots import read_used_plots
-from fuzzytrack.testbed.comparison import Comparison, compare_tracks
-from fuzzytrack.testbed.marks import BEST, WORSE
+from fuzzytrack.testbed.comparison import compare_tracks
 from fuzzytrack.testbed.recorded_comparison import compare_used
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers
 
-__all__ = ["DEFAULT_TRACKERS", "compare", "print_comparison", "print_marks", "trackers_named"]
+__all__ = ["DEFAULT_TRACKERS", "compare", "trackers_named"]
 
 DEFAULT_TRACKERS = "maneuver,fixed:alpha=0.5377:beta=0.2018,chan-style,stiffness-damping"
 
@@ -151,42 +140,3 @@ def trackers_named(text: str) -> dict[str, Tracker]:
         if not getattr(tracker, "causal", True):
             typer.echo(f"note: {name} uses the plot that it predicts", err=True)
     return found
-
-
-def print_comparison(found: Comparison) -> None:
-    """Table of a comparison, RMSE ± its standard error."""
-    rows = [
-        [
-            name,
-            with_error(found.predicted_rmse[k], found.predicted_error[k]),
-            with_error(found.filtered_rmse[k], found.filtered_error[k]),
-            "" if k == 0 else f"{100 * found.predicted_change[k]:+.1f} %",
-            mark,
-        ]
-        for k, (name, mark) in enumerate(zip(found.names, found.marks, strict=True))
-    ]
-    rows += [[], ["the plots themselves", "", show(found.measured_rmse), "", ""]]
-    print_table(
-        ["RMSE of position (m)", "predicted", "filtered", "vs first", ""],
-        rows,
-        title=(
-            f"{counted(found.runs, 'run')} of {counted(found.scans.mean(), 'scan')}, "
-            f"noise {found.sigma:g} m on each axis, seed {found.seed}"
-        ),
-    )
-    print_marks(found.marks)
-    if len(found.names) > 1:
-        paragraph("vs first: change of the predicted RMSE against the first tracker.")
-
-
-def print_marks(marks: Sequence[str]) -> None:
-    """Say what the marks in a table mean, where the truth is known."""
-    for mark, meaning in _MEANINGS.items():
-        if any(mark in each for each in marks):
-            paragraph(f"{mark}: {meaning}.")
-
-
-_MEANINGS = {
-    BEST: "the least RMSE of predicted positions",
-    WORSE: "the filtered positions are worse than the plots themselves",
-}

@@ -11,11 +11,8 @@ import typer
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.cli import options
-from fuzzytrack.cli.compare import (
-    DEFAULT_TRACKERS,
-    print_comparison,
-    trackers_named,
-)
+from fuzzytrack.cli.compare import DEFAULT_TRACKERS, trackers_named
+from fuzzytrack.cli.comparison_tables import print_comparison
 from fuzzytrack.cli.output import RESULTS, output_folder, print_json, progress, say, write_json
 from fuzzytrack.cli.pictures import save_picture, surfaces
 from fuzzytrack.fuzzy.loading import load_rulebase

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.compare import print_marks, trackers_named
+from fuzzytrack.cli.compare import trackers_named
+from fuzzytrack.cli.comparison_tables import print_marks
 from fuzzytrack.cli.output import (
     RESULTS,
     output_folder,

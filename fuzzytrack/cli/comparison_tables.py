@@ -1,18 +1,71 @@
-"""Tables of a comparison on recorded plots."""
+"""Tables of comparisons: on true tracks with simulated noise, and on recorded plots."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 
 from fuzzytrack.cli.noise_words import noise_sentence
 from fuzzytrack.cli.output import paragraph, print_table, say, say_aside, show, with_error
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.plurals import counted
 from fuzzytrack.testbed.block_bootstrap import RmsChange
+from fuzzytrack.testbed.comparison import Comparison
 from fuzzytrack.testbed.marks import BEST, WORSE, best_of
 from fuzzytrack.testbed.recorded_comparison import RecordedComparison
 
-__all__ = ["print_recorded"]
+__all__ = ["print_comparison", "print_marks", "print_recorded"]
+
+# What marks mean where the truth is known, and where it is not.
+_OF_ERRORS = {
+    BEST: "the least RMSE of predicted positions",
+    WORSE: "the filtered positions are worse than the plots themselves",
+}
+_OF_INNOVATIONS = {
+    BEST: "the least RMS of innovations",
+    WORSE: "worse than the plots themselves; the plot before predicts better",
+}
+
+
+def print_comparison(found: Comparison) -> None:
+    """Table of a comparison, RMSE ± its standard error."""
+    rows = [
+        [
+            name,
+            with_error(found.predicted_rmse[k], found.predicted_error[k]),
+            with_error(found.filtered_rmse[k], found.filtered_error[k]),
+            "" if k == 0 else f"{100 * found.predicted_change[k]:+.1f} %",
+            mark,
+        ]
+        for k, (name, mark) in enumerate(zip(found.names, found.marks, strict=True))
+    ]
+    rows += [[], ["the plots themselves", "", show(found.measured_rmse), "", ""]]
+    print_table(
+        ["RMSE of position (m)", "predicted", "filtered", "vs first", ""],
+        rows,
+        title=(
+            f"{counted(found.runs, 'run')} of {counted(found.scans.mean(), 'scan')}, "
+            f"noise {found.sigma:g} m on each axis, seed {found.seed}"
+        ),
+    )
+    print_marks(found.marks)
+    if len(found.names) > 1:
+        paragraph("vs first: change of the predicted RMSE against the first tracker.")
+
+
+def print_marks(marks: Sequence[str], meanings: Mapping[str, str] | None = None) -> None:
+    """Say what the marks in a table mean.
+
+    Parameters
+    ----------
+    marks : sequence of str
+        Of the trackers, see `fuzzytrack.testbed.marks.marks_of`.
+    meanings : mapping of str to str, optional
+        Of each mark; unless given, those of errors against the truth.
+    """
+    for mark, meaning in (_OF_ERRORS if meanings is None else meanings).items():
+        if any(mark in each for each in marks):
+            paragraph(f"{mark}: {meaning}.")
 
 
 def print_recorded(found: RecordedComparison, decoder: PlotDecoder) -> None:
@@ -70,16 +123,12 @@ def _print_innovations(found: RecordedComparison, unit: str) -> None:
         rows,
         title=_title(found, found.scored),
     )
-    _explain(
-        found,
+    paragraph(
         "RMS: distance from predictions to plots. The noise of the plots is in it, the same for "
-        "all trackers: they rank as by their errors, but differ by less.",
-        {
-            BEST: "the least RMS of innovations",
-            WORSE: "worse than the plots themselves; the plot before predicts better",
-        },
-        "RMS of innovations",
+        "all trackers: they rank as by their errors, but differ by less."
     )
+    print_marks(found.marks, _OF_INNOVATIONS)
+    _explain_changes(found, "RMS of innovations")
 
 
 def _print_errors(found: RecordedComparison, unit: str) -> None:
@@ -95,23 +144,11 @@ def _print_errors(found: RecordedComparison, unit: str) -> None:
         rows,
         title=_title(found, found.known),
     )
-    _explain(
-        found,
-        "",
-        {
-            BEST: "the least RMSE of predicted positions",
-            WORSE: "the filtered positions are worse than the plots themselves",
-        },
-        "predicted RMSE",
-    )
+    print_marks(found.marks)
+    _explain_changes(found, "predicted RMSE")
 
 
-def _explain(found: RecordedComparison, what: str, meanings: dict[str, str], compared: str) -> None:
-    if what:
-        paragraph(what)
-    for mark, meaning in meanings.items():
-        if any(mark in each for each in found.marks):
-            paragraph(f"{mark}: {meaning}.")
+def _explain_changes(found: RecordedComparison, compared: str) -> None:
     if len(found.scores) > 1:
         paragraph(
             f"vs first: change of the {compared} against the first tracker, and its 95 % interval; "
