@@ -10,10 +10,11 @@ from matplotlib.figure import Figure
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.plotting._batch_track import Track, place_of
 from fuzzytrack.plotting._maneuvers import Intervals, checked_intervals, shade_maneuvers
 from fuzzytrack.plotting._position_axes import time_unit
-from fuzzytrack.plotting._running import is_ragged, running_quartiles
-from fuzzytrack.plotting._shown_tracks import ShownTracks, Track, place_of, shown_id
+from fuzzytrack.plotting._ragged_lines import is_ragged, running_quartiles
+from fuzzytrack.plotting._shown_tracks import ShownTracks, shown_id
 from fuzzytrack.plotting._track_styles import STYLES, track_colors
 from fuzzytrack.trackers.result import TrackResult
 

@@ -12,6 +12,13 @@ from numpy.typing import ArrayLike
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.plotting._batch_track import (
+    Track,
+    batch_of,
+    one_track,
+    place_of,
+    true_positions,
+)
 from fuzzytrack.plotting._maneuvers import (
     Intervals,
     checked_intervals,
@@ -19,14 +26,7 @@ from fuzzytrack.plotting._maneuvers import (
     shade_maneuvers,
 )
 from fuzzytrack.plotting._position_axes import time_unit
-from fuzzytrack.plotting._running import is_ragged, running_rms
-from fuzzytrack.plotting._shown_tracks import (
-    Track,
-    batch_of,
-    one_track,
-    place_of,
-    true_positions,
-)
+from fuzzytrack.plotting._ragged_lines import is_ragged, running_rms
 from fuzzytrack.plotting._tracker_lines import (
     draw_rest,
     scale_axis,

@@ -15,18 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.plotting import _figures as shared
+from fuzzytrack.plotting._batch_track import Track, place_of, true_positions
 from fuzzytrack.plotting._maneuvers import maneuvers_of
 from fuzzytrack.plotting._plot_density import draw_density
 from fuzzytrack.plotting._position_axes import PositionAxes, spread, time_unit
-from fuzzytrack.plotting._shown_tracks import (
-    MARKED,
-    Project,
-    ShownTracks,
-    Track,
-    place_of,
-    shown_id,
-    true_positions,
-)
+from fuzzytrack.plotting._shown_tracks import MARKED, Project, ShownTracks, shown_id
 from fuzzytrack.plotting._track_labels import label_ends
 from fuzzytrack.plotting._track_styles import STYLES, track_colors
 from fuzzytrack.plotting.gains_over_time import draw_gains

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack.plotting._maneuvers import maneuvers_of
-from fuzzytrack.plotting._running import is_ragged, running_quartiles, running_rms
+from fuzzytrack.plotting._ragged_lines import is_ragged, running_quartiles, running_rms
 
 
 def flown(t, turns):

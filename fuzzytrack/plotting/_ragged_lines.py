@@ -1,4 +1,4 @@
-"""Lines that are too ragged to be read, as running means and bands of quartiles."""
+"""Which lines are too ragged to be read, and what is drawn instead: running means, quartiles."""
 
 from __future__ import annotations
 
