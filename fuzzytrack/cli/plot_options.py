@@ -39,7 +39,10 @@ def plot_reading(
         _Text, _option("COL,COL", "Columns of position, m. [default: x,y,z or x_m,y_m,z_m]")
     ] = None,
     polar: Annotated[
-        _Text, _option("RANGE,AZIMUTH[,ELEVATION]", "Columns of polar plots; angles in degrees.")
+        _Text,
+        _option(
+            "RANGE,AZIMUTH[,ELEVATION]", "Columns of polar plots: m, or as range_km says; degrees."
+        ),
     ] = None,
     azimuth_from: Annotated[
         str, _option("north|east", "Azimuth clockwise from north, or the other way from east.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["is_unit", "plain_name", "unit_of"]
+__all__ = ["is_unit", "meters_of", "plain_name", "unit_of"]
 
 # Units, each followed by its other spellings, in lower case.
 _SPELLINGS = {
@@ -19,6 +19,7 @@ _SPELLINGS = {
     "cm": ("centimeter", "centimeters", "centimetre", "centimetres"),
     "km": ("kilometer", "kilometers", "kilometre", "kilometres"),
     "ft": ("foot", "feet"),
+    "yd": ("yard", "yards"),
     "nmi": ("nm", "nautical miles"),
     "deg": ("degree", "degrees", "°", "º"),
     "rad": ("radian", "radians"),
@@ -28,6 +29,8 @@ _SPELLINGS = {
     "m/s2": ("m/s^2", "m/s²", "ms-2", "m s-2"),
     "px": ("pixel", "pixels"),
 }
+# Meters of a unit of length.
+_METERS = {"mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "yd": 0.9144, "nmi": 1852.0}
 _UNITS = {word: unit for unit, words in _SPELLINGS.items() for word in (unit, *words)}
 
 # "x [m]", "x (m)", "x {m}", "x <m>"; "x/m" and "x, m"; "x_m".
@@ -84,6 +87,11 @@ def unit_of(text: str) -> str:
     if len(text) > 1 and text[0] + text[-1] in ("[]", "()", "{}", "<>"):
         text = text[1:-1].strip()
     return _UNITS.get(text.lower(), text)
+
+
+def meters_of(unit: str) -> float:
+    """Meters of a unit of length, as `unit_of` spells it; 1 for any other word."""
+    return _METERS.get(unit, 1.0)
 
 
 def is_unit(cell: str) -> bool:

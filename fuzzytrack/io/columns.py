@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.column_names import plain_name
+from fuzzytrack.io.column_names import meters_of, plain_name
 from fuzzytrack.io.description import PlotDescription, texts
 from fuzzytrack.io.table import Kind
 from fuzzytrack.yamltree import suggestion
@@ -77,6 +77,8 @@ class Columns:
         Column of its heading.
     noise : tuple of str
         Columns of standard deviations.
+    units : tuple of (str, str)
+        Columns whose unit the file gives apart from their names, and the unit.
     """
 
     time: str
@@ -88,6 +90,7 @@ class Columns:
     own_ship: tuple[str, ...] = ()
     own_heading: str = ""
     noise: tuple[str, ...] = ()
+    units: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if not self.read:
@@ -102,6 +105,22 @@ class Columns:
         kinds |= dict.fromkeys([*self.read, *own, *self.noise], "gaps")
         return kinds
 
+    def unit(self, name: str) -> str:
+        """Unit of a column, by the file or else by its name; empty if none is given."""
+        return dict(self.units).get(name) or plain_name(name)[1]
+
+    def meters(self, name: str) -> float:
+        """What the numbers of a column are multiplied by to be in meters; 1 if they are not."""
+        return meters_of(self.unit(name)) if name in self._lengths else 1.0
+
+    @property
+    def _lengths(self) -> tuple[str, ...]:
+        """Columns that are converted to meters. Cartesian positions are taken as they are."""
+        if self.position not in ("polar", "geodetic"):
+            return ()
+        place = self.read[:1] if self.position == "polar" else self.read[2:]
+        return (*place, *self.own_ship, *self.noise)
+
     @property
     def sentence(self) -> str:
         """Which columns are used, in words."""
@@ -115,6 +134,11 @@ class Columns:
             parts.append(f"own heading {self.own_heading}")
         if self.noise:
             parts.append(f"sigma {', '.join(self.noise)}")
+        parts += [
+            f"{name} from {self.unit(name)} to m"
+            for name in self._lengths
+            if self.meters(name) != 1
+        ]
         return "; ".join(parts)
 
 
@@ -151,7 +175,8 @@ def choose_columns(
     turned = said.own_heading
     heading = "" if turned is None else known(names, turned, "own_heading", file)
     noise = _noise_columns(names, said, file)
-    columns = Columns(time, id, axes, position, read, date, own, heading, noise)
+    apart = tuple((name, unit) for name, unit in (units or {}).items() if name != time)
+    columns = Columns(time, id, axes, position, read, date, own, heading, noise, apart)
     _check_used(said, columns)
     every = [*filter(None, [date, time, id, heading]), *read, *own, *noise]
     doubled = [name for name in every if every.count(name) > 1]

@@ -67,7 +67,7 @@ class PlotDecoder:
         """Full circle in the unit of a bare angle; None for other positions."""
         if self.columns.position != "angle":
             return None
-        return 2 * math.pi if _in_radians(self.columns.axes[0]) else 360.0
+        return 2 * math.pi if self._in_radians(self.columns.axes[0]) else 360.0
 
     @property
     def noise_is_polar(self) -> bool:
@@ -139,16 +139,20 @@ class PlotDecoder:
 
     def _measured(self, table: Table, lost: Counter[str]) -> Array:
         """Columns of position, NaN where the value is not allowed."""
-        values = np.stack([table.numbers[name] for name in self.columns.read], axis=1)
+        values = self._lengths(table, self.columns.read)
         for name, least, most in self.description.valid:
             if name not in self.columns.read:
                 continue
-            column = table.numbers[name]
+            column = table.numbers[name]  # limits are in the unit of the column
             bad = (column < least) | (column > most)
             if bad.any():
                 values[bad] = math.nan
                 lost[f"{name} outside of {least:g} to {most:g}"] += int(bad.sum())
         return values
+
+    def _lengths(self, table: Table, names: Sequence[str]) -> Array:
+        """Columns of numbers side by side, those of lengths in meters."""
+        return np.stack([table.numbers[name] * self.columns.meters(name) for name in names], axis=1)
 
     def _placed(
         self, table: Table, measured: Array, lost: Counter[str]
@@ -205,11 +209,11 @@ class PlotDecoder:
             return plots
         from fuzzytrack.io.own_ship import relative_to_own_ship
 
-        own = np.stack([table.numbers[name] for name in names], axis=1) if names else None
+        own = self._lengths(table, names) if names else None
         moved = relative_to_own_ship(
             plots,
             own,
-            np.rad2deg(table.numbers[heading] * _radians(heading)) if heading else None,
+            np.rad2deg(table.numbers[heading] * self._radians(heading)) if heading else None,
             self.frame if self.own_ship_is_geodetic else None,
         )
         bad: Mask = moved.impossible & ~plots.impossible
@@ -218,12 +222,19 @@ class PlotDecoder:
 
     def _turned(self, table: Table, measured: Array) -> Array:
         """Bare angles from the bow as angles from north."""
-        heading = table.numbers[self.columns.own_heading] * _radians(self.columns.own_heading)
-        return np.asarray(measured + heading[:, None] / _radians(self.columns.axes[0]))
+        own = self.columns.own_heading
+        heading = table.numbers[own] * self._radians(own)
+        return np.asarray(measured + heading[:, None] / self._radians(self.columns.axes[0]))
 
     def radians(self, coordinate: int) -> float:
-        """Radians of the unit of a measured angle: degrees, unless its name says radians."""
-        return _radians(self.columns.read[coordinate])
+        """Radians of the unit of a measured angle: degrees, unless the file says radians."""
+        return self._radians(self.columns.read[coordinate])
+
+    def _radians(self, name: str) -> float:
+        return 1.0 if self._in_radians(name) else math.pi / 180
+
+    def _in_radians(self, name: str) -> bool:
+        return self.columns.unit(name) == "rad"
 
     @property
     def own_ship_is_geodetic(self) -> bool:
@@ -245,7 +256,10 @@ class PlotDecoder:
         missed: Mask = np.logical_not(np.isfinite(measured).all(axis=1))
         found = np.empty(measured.shape)
         for k, value in enumerate(self.noise):
-            found[:, k] = _positive(table, value, missed) if isinstance(value, str) else value
+            if isinstance(value, str):
+                found[:, k] = _positive(table, value, missed) * self.columns.meters(value)
+            else:
+                found[:, k] = value
         return found
 
 
@@ -261,14 +275,6 @@ def joined_cells(table: Table, columns: Columns) -> Cells:
 def is_latitude(name: str) -> bool:
     """Whether a column is a latitude by its name."""
     return any(word in plain_name(name)[0].split("_") for word in _LATITUDES)
-
-
-def _in_radians(name: str) -> bool:
-    return plain_name(name)[1] in ("rad", "radian", "radians")
-
-
-def _radians(name: str) -> float:
-    return 1.0 if _in_radians(name) else math.pi / 180
 
 
 def _count(lost: Counter[str], bad: Mask, reason: str) -> None:

@@ -41,7 +41,9 @@ class PlotDescription:
     axes : sequence of str, optional
         Columns of Cartesian position (m).
     polar : sequence of str, optional
-        Columns of range (m), azimuth (deg) and maybe elevation (deg).
+        Columns of range (m), azimuth (deg) and maybe elevation (deg). Ranges, and altitudes and
+        standard deviations below, are converted where the name of their column, or a row of units,
+        says km, nmi, ft, yd, cm or mm; angles where it says rad.
     azimuth_from : {"north", "east"}
         Direction of azimuth 0: azimuths grow clockwise from north, or counter-clockwise from east.
     geodetic : sequence of str, optional

@@ -373,15 +373,15 @@ def frame_of(columns: Columns, description: PlotDescription, table: Table) -> Lo
 
         return LocalFrame(*description.site)
     if columns.own_ship and is_latitude(columns.own_ship[0]):
-        return _frame_at_first(table, columns.own_ship)
-    return _frame_at_first(table, columns.read) if columns.position == "geodetic" else None
+        return _frame_at_first(table, columns, columns.own_ship)
+    return _frame_at_first(table, columns, columns.read) if columns.position == "geodetic" else None
 
 
-def _frame_at_first(table: Table, names: Sequence[str]) -> LocalFrame:
+def _frame_at_first(table: Table, columns: Columns, names: Sequence[str]) -> LocalFrame:
     """Frame about the first position that is one."""
     from fuzzytrack.io.geodetic import LocalFrame
 
-    places = np.stack([table.numbers[name] for name in names], axis=1)
+    places = np.stack([table.numbers[name] * columns.meters(name) for name in names], axis=1)
     longitudes = np.abs(places[:, 1])
     good = (np.abs(places[:, 0]) <= 90) & (longitudes <= 360)
     if not good.any():

@@ -193,7 +193,11 @@ def recognize(file: str, lines: Sequence[str], form: TextForm) -> Layout:
         taken = first + end
         if rows and is_units_row(rows[0][0]):
             (row, end), *rows = rows
-            units = {n: unit_of(c) for n, c in zip(names, row, strict=False) if n and c.strip()}
+            units = {
+                name: unit_of(cell)
+                for name, cell in zip(names, row, strict=False)
+                if name and cell.strip() and not _is_zone(cell)
+            }
             taken = first + end
     else:
         names, taken = checked_names(form.columns, f"{file}: `columns`"), first
@@ -220,8 +224,13 @@ def _is_empty(file: str) -> DataError:
 
 def is_units_row(row: Sequence[str]) -> bool:
     """Whether a row holds units of columns: at least one, and nothing else."""
-    cells = [cell.strip() for cell in row if cell.strip() not in ("", "-")]
+    cells = [cell.strip() for cell in row if cell.strip() not in ("", "-") and not _is_zone(cell)]
     return bool(cells) and all(map(is_unit, cells))
+
+
+def _is_zone(cell: str) -> bool:
+    """Whether a cell of a row of units says of a column that its dates are of Greenwich."""
+    return cell.strip().strip("[](){}<>").lower() in ("utc", "gmt", "z")
 
 
 def _rows(lines: Sequence[str], form: TextForm) -> list[tuple[list[str], int]]:

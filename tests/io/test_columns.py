@@ -79,6 +79,19 @@ def test_units_of_the_file_go_before_those_of_the_names():
         choose_columns(names, "f.csv", units={"y": "km"})
 
 
+def test_lengths_are_converted_from_the_unit_of_their_name_or_of_the_file():
+    said = PlotDescription(polar=("Rng[NM]", "Brg"), own_ship=("ox", "oy"), sigma_range="sr")
+    names = ("Time", "Rng[NM]", "Brg", "ox", "oy", "sr")
+    columns = choose_columns(names, "f.csv", said, {"Time": "s", "oy": "km", "Brg": "rad"})
+    assert [columns.meters(name) for name in names] == [1, 1852, 1, 1, 1000, 1]
+    assert (columns.unit("Brg"), columns.unit("ox")) == ("rad", "")
+    assert columns.sentence.endswith("; Rng[NM] from nmi to m; oy from km to m")
+    # Cartesian positions are taken as they are, and all that is added to them.
+    plain = PlotDescription(axes=("x_km", "y_km"), own_ship=("ox_km", "oy_km"))
+    columns = choose_columns(("t", "x_km", "y_km", "ox_km", "oy_km"), "f.csv", plain)
+    assert columns.meters("x_km") == columns.meters("ox_km") == 1
+
+
 def test_angles_are_axes_for_those_who_say_so():
     said = PlotDescription(axes=("lat", "lon"), cartesian=True)
     columns = choose_columns(("t", "lat", "lon"), "f.csv", said)

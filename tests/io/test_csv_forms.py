@@ -112,6 +112,14 @@ def test_units_that_are_repeated_below_the_names_are_counted(tmp_path):
     ]
 
 
+def test_a_row_of_units_may_name_the_zone_of_dates(tmp_path):
+    path = written(tmp_path, "Time;Target;Rng;Brg\nUTC;;NM;rad\n2024-05-01 09:00:00;T1;2,5;1,5\n")
+    recording = read_tracks(str(path), polar=("Rng", "Brg"), id="Target")
+    assert recording.columns.units == (("Rng", "nmi"), ("Brg", "rad"))
+    place = 2.5 * 1852 * np.array([np.sin(1.5), np.cos(1.5)])
+    np.testing.assert_allclose(recording.tracks[0].plots, [place])
+
+
 def test_units_are_given_as_they_are_usually_written(tmp_path):
     _, source = read(written(tmp_path, "time,x,y\n[msec],(Meters),-\n0,1,2\n"))
     assert source.units == {"time": "ms", "x": "m", "y": "-"}

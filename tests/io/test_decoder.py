@@ -72,6 +72,35 @@ def test_angles_in_radians_by_their_names():
     np.testing.assert_allclose(radians.sigma, degrees.sigma)
 
 
+def test_lengths_in_other_units_become_meters():
+    plain = {**RADAR, "ox": [500.0, 1000.0], "oy": [0.0, -500.0], "sr": [10.0, 20.0]}
+    options = {"sigma_azimuth": 1.0, "valid": (("r", 500, 3000),)}
+    meters = read(plain, polar=("r", "az"), own_ship=("ox", "oy"), sigma_range="sr", **options)[1]
+    columns = {
+        "Rng[NM]": plain["r"] / np.float64(1852),
+        "az": plain["az"],
+        "ox_km": plain["ox"] / np.float64(1000),
+        "oy": plain["oy"],
+        "sr (ft)": plain["sr"] / np.float64(0.3048),
+    }
+    # Limits are those of the column, in its own unit.
+    options["valid"] = (("Rng[NM]", 0.25, 2),)
+    polar, own = ("Rng[NM]", "az"), ("ox_km", "oy")
+    other = read(columns, polar=polar, own_ship=own, sigma_range="sr (ft)", **options)[1]
+    np.testing.assert_allclose(other.plots, meters.plots, atol=1e-9)
+    np.testing.assert_allclose(other.sigma, meters.sigma)
+
+
+def test_altitudes_in_feet_become_meters():
+    places = {"lat": [60.0, 60.0], "lon": [10.0, 10.0]}
+    for site in (None, (60.0, 10.0, 1000.0)):
+        columns = {**places, "alt_ft": [10000.0, 11000.0]}
+        _, piece = read(columns, geodetic=("lat", "lon", "alt_ft"), site=site)
+        assert np.diff(piece.plots[:, 2]) == pytest.approx(304.8, abs=1e-3)
+        begins = 0 if site is None else 2048
+        assert piece.plots[0, 2] == pytest.approx(begins, abs=1e-3)
+
+
 @pytest.mark.parametrize(("name", "period"), [("bearing", 360.0), ("bearing_rad", 2 * math.pi)])
 def test_a_bare_angle_has_a_period(name, period):
     decoder, piece = read({name: [0.5, 1.0]}, angle=name)
