@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array, Mask
@@ -67,8 +68,8 @@ class NoiseEstimate:
         their `sigma` is the deviation of such rounding, the step divided by the root of 12.
     motion : ndarray, shape (n_axes,)
         How much plots differ from a straight line through those before: the limit of nine in ten
-        second differences, as a deviation. About `sigma` where targets fly straight, and more where
-        they maneuver by more than the noise from plot to plot.
+        second differences, as a deviation, single plots that are far off left out. `sigma` where
+        targets fly straight, and more where they maneuver by more than the noise from plot to plot.
     """
 
     sigma: Array
@@ -205,7 +206,7 @@ def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: str) -> _A
         )
     sigma, used = _deviation(chosen.values)
     bends = _Differences.of(times[apart], plots[apart], codes[apart], 2).values
-    motion = float(np.quantile(np.abs(bends), 0.9)) / _NINE_TENTHS
+    motion = max(sigma, _motion(bends))
     # Differences of plots without noise are those of rounding.
     nothing = 64 * float(np.finfo(np.float64).eps) * float(np.median(np.abs(plots)))
     if sigma <= nothing:
@@ -217,6 +218,16 @@ def _axis(times: Array, plots: Array, codes: NDArray[np.int64], axis: str) -> _A
     if rounding > sigma:
         return _Axis(rounding, error * rounding, used, motion, True)
     return _Axis(sigma, error * sigma, used, motion)
+
+
+def _motion(bends: Array) -> float:
+    """Limit of nine in ten second differences, as a deviation.
+
+    One plot that is far off bends the track to and fro at three plots, and a maneuver to one side:
+    the median of three neighbors keeps the maneuver, and of the three bends of the plot one.
+    """
+    steady = np.median(sliding_window_view(bends, 3), axis=-1) if len(bends) > 2 else bends
+    return float(np.quantile(np.abs(steady), 0.9)) / _NINE_TENTHS
 
 
 def _apart(times: Array, codes: NDArray[np.int64]) -> Mask:

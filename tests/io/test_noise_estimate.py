@@ -265,3 +265,11 @@ def test_motion_is_the_noise_of_what_flies_straight_and_more_of_what_turns():
     # Second differences of the sine, as large as nine in ten of them are.
     bend = 500 * 4 * np.sin(0.1) ** 2 / math.sqrt(6) * np.sin(0.45 * math.pi) / 1.645
     np.testing.assert_allclose(found.motion, bend, rtol=0.1)
+
+
+def test_single_plots_that_are_far_off_are_no_motion():
+    rng = np.random.default_rng(9)
+    t, z = np.arange(1000.0), rng.normal(size=(1000, 1))
+    z[::20] += 500 * rng.choice([-1, 1], size=(50, 1))
+    found = estimate_noise(t, 30 * t[:, None] + z, np.zeros(1000, dtype=int))
+    np.testing.assert_array_equal(found.motion, found.sigma)
