@@ -292,10 +292,6 @@ class Variable:
 
     def drawing(self) -> str:
         """The sets as a small drawing in HTML."""
-        low, high = self.universe.low, self.universe.high
-        corners = [c for s in self.sets for c in s.breakpoints() if low <= c <= high]
-        # On both sides of a vertical flank.
-        beside = [b for c in corners for b in (np.nextafter(c, low), np.nextafter(c, high))]
-        x = np.unique([*np.linspace(low, high, 61), *corners, *beside])
+        x = self.nodes(61)
         grades = dict(zip(self.set_names, self.memberships(x), strict=True))
         return curves(x, grades, list(self.shares().values()))
