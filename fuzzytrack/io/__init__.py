@@ -1,6 +1,7 @@
 """Files of plots and tracks: CSV, and Parquet with the extra ``parquet``; readers of others."""
 
-from fuzzytrack.io.cleaning import Cleaner, Cleaning, CleaningCounts
+from fuzzytrack.io.cleaning import Cleaner
+from fuzzytrack.io.cleaning_rules import Cleaning, CleaningCounts
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import check_output, whole_file

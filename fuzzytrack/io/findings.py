@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from fuzzytrack.io.cleaning import CleaningCounts
+from fuzzytrack.io.cleaning_rules import CleaningCounts
 from fuzzytrack.plurals import counted
 
 __all__ = ["Findings"]

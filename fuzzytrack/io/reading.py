@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from fuzzytrack.io.cleaning import Cleaning
+from fuzzytrack.io.cleaning_rules import Cleaning
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.text_form import TextForm
 

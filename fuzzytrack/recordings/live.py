@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.cleaning import Cleaning
+from fuzzytrack.io.cleaning_rules import Cleaning
 from fuzzytrack.io.cleaning_step import SEGMENT, TIME
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.piece import Piece

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io import cleaning
-from fuzzytrack.io.cleaning import Cleaner, Cleaning, CleaningCounts
+from fuzzytrack.io.cleaning import Cleaner
+from fuzzytrack.io.cleaning_rules import Cleaning, CleaningCounts
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.table import Words
 from fuzzytrack.simulation.sampling import PATTERNS
