@@ -80,10 +80,10 @@ def _as_options(reading: Mapping[str, Any]) -> list[str]:
 
 
 def _needed(kind: SampleKind) -> str:
-    """Extra that reading a sample needs, in words."""
-    return f"  (needs the extra {kind.extra}: pip install 'fuzzytrack[{kind.extra}]')" * bool(
-        kind.extra
-    )
+    """Extra that reading a sample needs, in words; empty if it needs none."""
+    if not kind.extra:
+        return ""
+    return f"  (needs the extra {kind.extra}: pip install 'fuzzytrack[{kind.extra}]')"
 
 
 def _list(output: str | None, truth: str | None, json: bool) -> None:

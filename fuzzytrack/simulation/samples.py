@@ -140,11 +140,8 @@ class _Target:
 
     def position(self, t: Array) -> Array:
         """East and north (m) at times, of shape (n, 2)."""
-        place, heading = (
-            np.tile(np.array(self.start, np.float64), (len(t), 1)),
-            math.radians(90 - self.course),
-        )
-        begin = self.begin
+        place = np.tile(np.array(self.start, np.float64), (len(t), 1))
+        heading, begin = math.radians(90 - self.course), self.begin
         for duration, rate in (*self.legs, (math.inf, 0.0)):
             within, angle = np.clip(t - begin, 0.0, duration), math.radians(-rate)
             if angle == 0:
@@ -152,7 +149,8 @@ class _Target:
             else:
                 radius = self.speed / angle
                 place += turn(speed=self.speed, radius=radius, heading=heading, at=within)[1]
-            heading, begin = heading + angle * duration if angle else heading, begin + duration
+                heading += angle * duration
+            begin += duration
         return place
 
     def courses(self, t: Array) -> Array:
