@@ -12,8 +12,8 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.cli.comparison_tables import print_comparison, print_recorded
 from fuzzytrack.cli.noise_words import noise_json
-from fuzzytrack.cli.output import print_json, progress, say_aside
-from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.cli.output import print_json, progress, say_notes
+from fuzzytrack.cli.plot_options import gate_width, reads_plots
 from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import read_recording, recording_files
@@ -65,7 +65,7 @@ def compare(
     trackers. With --noise, FILE holds true positions, to which noise is added.
     """
     options.load_plugins(plugin)
-    width = number_or(gate, "--gate", {"auto": "auto", "none": None})
+    width = gate_width(gate)
     chosen = trackers_named(trackers or DEFAULT_TRACKERS)
     if noise is not None:
         _check_simulated(noise, truth, gate, reading)
@@ -76,7 +76,7 @@ def compare(
     with progress("reading") as watch:
         used = read_used_plots(file, reading, truth=truth, gate=width, progress=watch)
     if trackers is None and not used.has_sigma:
-        say_aside(f"note: compared without {DEFAULT_TRACKER}, which needs the noise of the plots")
+        say_notes([f"compared without {DEFAULT_TRACKER}, which needs the noise of the plots"])
         del chosen[DEFAULT_TRACKER]
     with progress("comparing") as watch:
         texts = {name: name for name in chosen}
@@ -116,8 +116,7 @@ def _compare_simulated(
     """Trackers on the positions of a file, which are taken as true, with simulated noise."""
     with progress("reading") as watch:
         recording = read_recording(PlotFiles.of(recording_files(file), reading), watch)
-    for note in recording.findings.notes:
-        say_aside(f"note: {note}")
+    say_notes(recording.findings.notes)
     tracks = [(track.time, track.plots) for track in recording.tracks]
     with progress("comparing") as watch:
         found = compare_tracks(trackers, tracks, noise, runs, seed, watch)

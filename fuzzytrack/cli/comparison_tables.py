@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from fuzzytrack.cli.noise_words import noise_sentence
-from fuzzytrack.cli.output import paragraph, print_table, say, say_aside, show, with_error
+from fuzzytrack.cli.output import paragraph, print_table, say, say_notes, show, with_error
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.plurals import counted
 from fuzzytrack.testbed.block_bootstrap import RmsChange
@@ -75,8 +75,7 @@ def print_recorded(found: RecordedComparison, decoder: PlotDecoder) -> None:
     sigma = noise_sentence(decoder)
     if sigma:
         paragraph(f"sigma: {sigma}")
-    for note in found.notes:
-        say_aside(f"note: {note}")
+    say_notes(found.notes)
     if found.lag is not None:
         paragraph(_lag_sentence(found))
     say()

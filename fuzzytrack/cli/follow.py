@@ -12,7 +12,7 @@ from threading import Timer
 from fuzzytrack.cli.complaints import one_line, printable
 from fuzzytrack.cli.interrupts import Interrupts
 from fuzzytrack.cli.noise_words import noise_sentence
-from fuzzytrack.cli.output import say_aside
+from fuzzytrack.cli.output import say_aside, say_notes
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT
 from fuzzytrack.io.byte_stream import STANDARD_INPUT
 from fuzzytrack.io.formats import PARQUET
@@ -138,8 +138,7 @@ def _begin(tracks: LiveTracks, lines: LineStream, compiled: bool) -> None:
     noise = noise_sentence(decoder)
     if noise:
         say_aside(f"sigma: {noise}")
-    for note in ready.findings.notes:
-        say_aside(f"note: {note}")
+    say_notes(ready.findings.notes)
     if compiled and not lines.look_ahead(_FEW):
         told = Timer(_LONG, say_aside, ("compiling the tracker; the next run finds it on disk",))
         told.daemon = True

@@ -6,7 +6,7 @@ import json
 import math
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ __all__ = [
     "progress",
     "say",
     "say_aside",
+    "say_notes",
     "show",
     "with_error",
     "write_json",
@@ -49,6 +50,12 @@ def say_aside(text: str) -> None:
     Names of arguments in backquotes are written as options.
     """
     typer.echo(_ARGUMENT.sub(lambda found: f"--{found[1].replace('_', '-')}", text), err=True)
+
+
+def say_notes(notes: Iterable[str]) -> None:
+    """Print what was guessed, left out or put right, a line each, on standard error."""
+    for note in notes:
+        say_aside(f"note: {note}")
 
 
 def paragraph(text: str) -> None:

@@ -12,8 +12,9 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.io.reading import Reading
+from fuzzytrack.recordings.judging import GateWidth
 
-__all__ = ["number_or", "reads_plots"]
+__all__ = ["gate_width", "number_or", "plot_reading", "reads_plots"]
 
 _Text = str | None
 
@@ -176,6 +177,12 @@ def number_or(text: str, option: str, words: dict[str, Any]) -> Any:
         more = "".join(f", or {word}" for word in words)
         raise ValueError(f"{option}: expected a number > 0{more}, got {text!r}")
     return value
+
+
+def gate_width(text: str) -> GateWidth:
+    """What is written after ``--gate``."""
+    width: GateWidth = number_or(text, "--gate", {"auto": "auto", "none": None})
+    return width
 
 
 def _numbers(text: str | None, option: str) -> tuple[float, ...] | None:

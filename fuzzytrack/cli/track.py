@@ -17,12 +17,12 @@ from fuzzytrack.cli.output import (
     print_table,
     progress,
     say,
-    say_aside,
+    say_notes,
     show,
 )
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
-from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.cli.plot_options import gate_width, reads_plots
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import check_table
@@ -130,7 +130,7 @@ def track(
     A folder, or a file of more than 100 MB, is tracked in pieces, and may be larger than memory.
     """
     options.load_plugins(plugin)
-    width = number_or(gate, "--gate", {"auto": "auto", "none": None})
+    width = gate_width(gate)
     live = FollowOptions(
         lateness=lateness, forget=forget, state=state, feed=feed, compiled=compiled
     )
@@ -298,8 +298,7 @@ def _print_table(run: _Run) -> None:
     noise = noise_sentence(run.decoder)
     if noise:
         say(f"sigma: {noise}")
-    for note in run.findings.notes:
-        say_aside(f"note: {note}")
+    say_notes(run.findings.notes)
     start = "" if columns.id else "track"
     rows = [[start + _label(one), *_row(of)] for one, of in run.tracks or ()]
     if len(rows) != 1:

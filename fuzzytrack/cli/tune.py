@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.output import print_json, print_table, progress, say, say_aside, show
-from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.cli.output import print_json, print_table, progress, say, say_notes, show
+from fuzzytrack.cli.plot_options import gate_width, reads_plots
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.reading import Reading
@@ -98,7 +98,7 @@ def tune(
                 tracker,
                 free=None if free is None else options.names(free, "--free"),
                 truth=truth,
-                gate=number_or(gate, "--gate", {"auto": "auto", "none": None}),
+                gate=gate_width(gate),
                 reading=reading,
                 runs=runs,
                 seed=seed,
@@ -138,8 +138,7 @@ def _check_output(output: str, tracker: str, data: list[str]) -> None:
 
 
 def _print(found: Tuned) -> None:
-    for note in found.notes:
-        say_aside(f"note: {note}")
+    say_notes(found.notes)
     say(
         f"{found.data}: {counted(found.plots, 'plot')}, {found.folds} folds by {found.units}, "
         f"{counted(found.trials, 'trial')}, seed {found.seed}"

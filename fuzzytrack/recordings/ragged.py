@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.judge import Judge, JudgeMemory
 from fuzzytrack.recordings.judged import Judged, run_judged
 from fuzzytrack.reprs import summary
@@ -19,7 +20,7 @@ from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
-__all__ = ["Batch", "batches", "run_judged_tracks", "run_tracks"]
+__all__ = ["Batch", "batches", "run_judged_tracks", "run_tracks", "sigmas_of"]
 
 
 # Tracks of one batch are at least this part of the longest: padding costs a quarter at most.
@@ -47,6 +48,12 @@ class Batch:
 
     def __repr__(self) -> str:
         return summary(self, "members", "places")
+
+
+def sigmas_of(tracks: Sequence[Track]) -> list[Array] | None:
+    """Standard deviations of the plots of each track (m); None unless all have them."""
+    found = [track.sigma for track in tracks if track.sigma is not None]
+    return found if len(found) == len(tracks) else None
 
 
 def batches(times: Sequence[Array]) -> tuple[Batch, ...]:

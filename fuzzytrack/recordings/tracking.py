@@ -16,7 +16,7 @@ from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.notebook import html_of
 from fuzzytrack.recordings.picture import picture_of
 from fuzzytrack.recordings.preparation import PreparedPlots, prepare
-from fuzzytrack.recordings.ragged import run_judged_tracks, run_tracks
+from fuzzytrack.recordings.ragged import run_judged_tracks, run_tracks, sigmas_of
 from fuzzytrack.recordings.restarts import divided
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.track_table import TrackTable
@@ -120,11 +120,9 @@ def _run(
     prepared: PreparedPlots, tracks: Sequence[Track], progress: Progress | None
 ) -> tuple[tuple[Track, ...], tuple[TrackResult, ...]]:
     """Tracks with their results; those that a gate starts again are divided there."""
-    sigmas = [track.sigma for track in tracks]
-    known = [sigma for sigma in sigmas if sigma is not None]
     given = [(track.time, track.plots) for track in tracks]
     common: dict[str, Any] = {
-        "sigmas": known if len(known) == len(sigmas) else None,
+        "sigmas": sigmas_of(tracks),
         "keep": (*KEPT, *ON_REQUEST) if prepared.table.deviation else None,
     }
     tracker, sigma, judge = prepared.tracker, prepared.files.decoder.sigma, prepared.judge

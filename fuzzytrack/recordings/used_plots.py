@@ -18,7 +18,7 @@ from fuzzytrack.io.recording import Recording, Track, read_recording
 from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.judging import GateWidth, judge_of
 from fuzzytrack.recordings.preparation import DEFAULT_TRACKER, inputs_of, noise_differs, suited
-from fuzzytrack.recordings.ragged import run_judged_tracks
+from fuzzytrack.recordings.ragged import run_judged_tracks, sigmas_of
 from fuzzytrack.recordings.restarts import divided
 from fuzzytrack.recordings.truth import read_truth
 from fuzzytrack.reprs import summary
@@ -125,13 +125,12 @@ def _gated(
     """Tracks without the plots that a gate rejects, divided where it begins them again."""
     differ = noise_differs(decoder)
     _, tracker = suited(DEFAULT_TRACKER, as_tracker(DEFAULT_TRACKER), axes_differ=differ)
-    sigmas = [track.sigma for track in tracks if track.sigma is not None]
     judged = run_judged_tracks(
         tracker,
         [(track.time, track.plots) for track in tracks],
         decoder.sigma,
         judge,
-        sigmas=sigmas or None,
+        sigmas=sigmas_of(tracks),
         keep=("predicted",),
     )
     used = [

@@ -23,6 +23,8 @@ __all__ = ["RmsChange", "rms_change"]
 _BLOCKS = 15
 # More tracks than this are put together to so many units.
 _UNITS = 200
+# Level of the interval.
+_LEVEL = 0.95
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,6 @@ def rms_change(
     second: ArrayLike,
     tracks: ArrayLike,
     *,
-    level: float = 0.95,
     seed: int = 0,
     resamples: int = 999,
 ) -> RmsChange:
@@ -79,8 +80,6 @@ def rms_change(
         Squared errors of both, the plots of a track in order of time.
     tracks : array_like of int, shape (n_plots,)
         To which track each plot belongs; those of a track follow each other.
-    level : float
-        Of the interval, 0 < level < 1.
     seed : int
         Of the draws, not negative.
     resamples : int
@@ -113,14 +112,17 @@ def rms_change(
     shares = 0.5 * (sums[1] / (sums[1] @ chance) - sums[0] / (sums[0] @ chance)) / count
     error = math.sqrt(count * float(shares**2 @ chance) * count / (count - 1))
     draws = np.random.default_rng(seed).choice(len(chance), (resamples, count), p=chance)
-    reach = error * _student(sums[:, draws], middle, level)
+    reach = error * _student(sums[:, draws], middle)
     return RmsChange(
         math.expm1(middle), math.expm1(middle - reach), math.expm1(middle + reach), count
     )
 
 
-def _student(drawn: Array, middle: float, level: float) -> float:
-    """Quantile of the size of studentized deviations; `drawn` is (2, n_resamples, n_blocks)."""
+def _student(drawn: Array, middle: float) -> float:
+    """Size that 95 % of studentized deviations stay within.
+
+    `drawn` has shape (2, n_resamples, n_blocks).
+    """
     count = drawn.shape[2]
     totals = drawn.sum(axis=2, keepdims=True)
     with np.errstate(all="ignore"):
@@ -129,7 +131,7 @@ def _student(drawn: Array, middle: float, level: float) -> float:
         sizes = np.abs(0.5 * np.log(totals[1] / totals[0])[:, 0] - middle) / errors
     # A resample of one block many times says nothing.
     known = sizes[errors > 0]
-    return float(np.quantile(known, level)) if len(known) else 0.0
+    return float(np.quantile(known, _LEVEL)) if len(known) else 0.0
 
 
 def _blocks(squares: Array, tracks: NDArray[np.int64]) -> tuple[Array, Array, int]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError, TrackWarning
 from fuzzytrack.io.recording import Track
-from fuzzytrack.recordings.ragged import batches, run_tracks
+from fuzzytrack.recordings.ragged import batches, run_tracks, sigmas_of
 from fuzzytrack.reprs import summary
 from fuzzytrack.testbed.metrics import squared_distance
 from fuzzytrack.trackers.base import Tracker
@@ -61,13 +61,13 @@ def positions_of(tracker: Tracker, tracks: Sequence[Track]) -> Positions:
         If the tracker needs the noise, and it is not known.
     """
     pairs = [(track.time, track.plots) for track in tracks]
-    sigmas = [track.sigma for track in tracks if track.sigma is not None]
+    sigmas = sigmas_of(tracks)
     keep = ("predicted", "filtered") if isinstance(tracker, LaneTracker) else None
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             # The table shows it if gains do not suit the times.
             warnings.simplefilter("ignore", TrackWarning)
-            results = run_tracks(tracker, pairs, sigmas=sigmas or None, keep=keep)
+            results = run_tracks(tracker, pairs, sigmas=sigmas, keep=keep)
             variance = _variances(tracker, tracks) if sigmas else None
     except DataError:
         lost = np.full((sum(map(len, (t for t, _ in pairs))), pairs[0][1].shape[1]), math.inf)
