@@ -49,7 +49,8 @@ class JudgedRows:
     judged : Piece
         All rows, with the segments of those that are kept.
     raw : Piece
-        The same as they came, with the times of a clock that never starts again.
+        The same rows as they came, but for their times, which are counted on where the clock
+        starts again at 0.
     kept : ndarray of bool, shape (n_rows,)
         Which rows are neither dropped nor wait.
     """
@@ -77,7 +78,8 @@ class JudgedRows:
     def waiting(self) -> Piece:
         """Rows of tracks that have stopped, from the one on that is out of order.
 
-        That one has its time of a clock that never starts again, the others have theirs as it came.
+        The time of that one is counted on where the clock starts again at 0; the others have their
+        times as they came.
         """
         assert self.judged.segments is not None
         return self.raw.take(self.judged.segments == cleaning_step.WAITS)
@@ -239,7 +241,7 @@ class Cleaner:
         return OWN + 2 * n_axes
 
     def numbers(self, ids: Sequence[str], n_axes: int) -> Array:
-        """All that is known of tracks, shape (n_tracks, `width`); of new ones that they are new."""
+        """All that is known of tracks, shape (n_tracks, `width`); unknown ones are begun."""
         self._make_room(n_axes)
         places = [self._place(id) for id in ids]
         self._make_room(n_axes)
@@ -247,7 +249,7 @@ class Cleaner:
         return found
 
     def put(self, ids: Sequence[str], numbers: Array, *, turned: bool = False) -> None:
-        """Make tracks what they were when `numbers` gave these.
+        """Set tracks back to what `numbers` gave of them.
 
         Parameters
         ----------
@@ -255,7 +257,7 @@ class Cleaner:
             The tracks; new ones are made.
         numbers : ndarray, shape (n_tracks, width)
         turned : bool
-            Whether their clock stays as often turned as it is.
+            Whether to leave alone how often the clock of each has started again.
         """
         now = self.numbers(ids, (numbers.shape[1] - OWN) // 2)
         places = [self._slot[id] for id in ids]

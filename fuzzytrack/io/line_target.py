@@ -59,20 +59,21 @@ class LineTarget:
         self.written = os.lseek(self._descriptor, 0, os.SEEK_END)
 
     def write(self, header: bytes, lines: bytes) -> None:
-        """Write lines at once, under the first one of all where there is none yet.
+        """Write lines at once; the header goes before them where nothing has been written yet.
 
         Parameters
         ----------
         header : bytes
-            The first line; empty if there is none.
+            The first line of the file; empty if it has none.
         lines : bytes
+            Whole lines.
 
         Raises
         ------
         DataError
             If the file begins with another line.
         OSError
-            If they cannot be written; BrokenPipeError if nobody reads them.
+            If they cannot be written; BrokenPipeError if the reader of the pipe has gone.
         """
         if self._needs_header:
             self._needs_header = False

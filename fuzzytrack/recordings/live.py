@@ -350,14 +350,14 @@ class LiveTracks:
         }
 
     def set_common(self, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Make known what `common` gave."""
+        """Set back what `common` gave."""
         period, now, fills = arrays["clock"].tolist()
         self._cleaner.clock = period, now, int(fills)
         self._cleaner.past[:] = arrays["past"]
         *self._gone[:], self._swept = arrays["gone"].tolist()
 
     def numbers(self, ids: Sequence[str]) -> Array:
-        """All that is known of tracks, shape (n_tracks, n_numbers); new ones are made."""
+        """All that is known of tracks, shape (n_tracks, n_numbers); unknown ones are begun."""
         cleaning = self._cleaner.numbers(ids, self._axes)
         names = [_name(*each) for each in zip(ids, cleaning[:, SEGMENT].tolist(), strict=True)]
         judged = [self._restarts.of(ids), [self._rejected[id] for id in ids]]
@@ -371,14 +371,14 @@ class LiveTracks:
         )
 
     def put(self, ids: Sequence[str], numbers: Array, *, turned: bool = False) -> None:
-        """Make tracks what they were when `numbers` gave these.
+        """Set tracks back to what `numbers` gave of them.
 
         Parameters
         ----------
         ids : sequence of str
         numbers : ndarray, shape (n_tracks, n_numbers)
         turned : bool
-            Whether their clock stays as often turned as it is.
+            Whether to leave alone how often the clock of each has started again.
         """
         width = self._cleaner.width(self._axes)
         ends = np.cumsum([width, 1, 1, KNOWN])

@@ -65,7 +65,7 @@ def digests(columns: dict[str, Any], names: Sequence[str]) -> list[bytes]:
     """Digest of each answer, by the bits of its numbers; its identity and time do not change."""
     numbers = [columns[name] for name in names if isinstance(columns.get(name), np.ndarray)]
     table = np.column_stack([np.asarray(each, dtype=np.float64) for each in numbers])
-    # Of the several NaN of a processor, one.
+    # A NaN may have other bits from run to run.
     table[np.isnan(table)] = math.nan
     return [blake2b(row.tobytes(), digest_size=8).digest() for row in table]
 

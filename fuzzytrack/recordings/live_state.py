@@ -194,7 +194,7 @@ class LiveState:
             tracks.put(ids, arrays["numbers"])
         tracks.set_common(arrays)
         if tracks.lateness:
-            tracks.recent.update(_recent_of(ids, facts, arrays))
+            tracks.recent.update(_recent_of(ids, arrays))
 
 
 def _rows_of(tracks: LiveTracks, ids: Sequence[str]) -> dict[str, NDArray[Any]]:
@@ -217,10 +217,8 @@ def _rows_of(tracks: LiveTracks, ids: Sequence[str]) -> dict[str, NDArray[Any]]:
     }
 
 
-def _recent_of(
-    ids: Sequence[str], facts: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
-) -> dict[str, RecentRows]:
-    """The last rows of tracks out of arrays."""
+def _recent_of(ids: Sequence[str], arrays: Mapping[str, NDArray[Any]]) -> dict[str, RecentRows]:
+    """The last rows of tracks, out of the arrays of `_rows_of`."""
     times = arrays["row_time"].tolist()
     sigmas: list[Any] = list(map(tuple, arrays["row_sigma"].tolist())) or [None] * len(times)
     answers = arrays["row_answer"].tobytes()

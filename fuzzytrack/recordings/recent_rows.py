@@ -26,7 +26,7 @@ class Row:
     Attributes
     ----------
     time : float
-        Its time (s), by a clock that never starts again.
+        Its time (s), counted on where the clock of the feed starts again at 0.
     plot : tuple of float
         Position as it came (m), NaN where missed.
     sigma : tuple of float or None

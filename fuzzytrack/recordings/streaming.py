@@ -202,7 +202,7 @@ class OpenTracks:
         Returns
         -------
         ndarray, shape (n_tracks, width)
-            NaN of tracks that there are not.
+            A row of NaN for a track that does not exist.
         """
         found = np.full((len(names), self.width(n_axes)), math.nan)
         there = np.array([name in self._slot for name in names], dtype=np.bool_)
@@ -216,7 +216,7 @@ class OpenTracks:
         return found
 
     def put(self, names: Sequence[str], numbers: Array, n_axes: int) -> None:
-        """Make tracks what they were when `numbers` gave these; they end, or begin, if need be.
+        """Set tracks back to what `numbers` gave of them; they end, or begin, if need be.
 
         Parameters
         ----------
@@ -244,7 +244,7 @@ class OpenTracks:
             self._memory[slots] = numbers[:, end:].reshape(len(slots), n_axes, -1)
 
     def end(self, names: Sequence[str]) -> None:
-        """End tracks; those that there are not are passed over."""
+        """End tracks; names of no track are passed over."""
         slots = [self._slot.pop(name) for name in names if name in self._slot]
         if slots:
             assert self._store is not None

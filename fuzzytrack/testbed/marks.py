@@ -34,11 +34,11 @@ def marks_of(errors: ArrayLike, own: ArrayLike, limit: float) -> list[str]:
     own : array_like, shape (n_trackers,)
         What is compared with the limit.
     limit : float
-        Error of the plots themselves; a tracker above it is worse than none.
+        Error of the plots themselves; a tracker above it is worse than no tracker.
     """
     best = best_of(errors)
     each = np.asarray(own, dtype=np.float64)
-    # An error that is no number is larger than any.
+    # NaN and infinity: the tracker has lost the target.
     worse = (each > limit) | ~np.isfinite(each)
     return [
         ", ".join(([BEST] if place == best else []) + ([WORSE] if bad else []))
