@@ -208,7 +208,8 @@ class _Run:
         try:
             state.save(self.feed, self.target.written)
         except OSError as error:
-            say_aside(f"the state was not saved: {one_line(error)}")
+            why = one_line(error).removeprefix("error: ")
+            say_aside(f"{state.path}: the state was not saved: {why}")
 
     def _answer(self, lines: list[bytes]) -> None:
         answers = self.feed.push(lines)

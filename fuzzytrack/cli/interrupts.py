@@ -1,4 +1,4 @@
-"""Ctrl-C in a command that must end between two pieces of work, and not within one."""
+"""Ctrl-C or SIGTERM in a command that must end between two pieces of work, not within one."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ __all__ = ["Interrupts"]
 _T = TypeVar("_T")
 
 
+# What Ctrl-C sends, and what service managers and containers send to stop a program.
+_SIGNALS = signal.SIGINT, signal.SIGTERM
+
+
 class Interrupts:
-    """Ctrl-C ends a run between two lines; the second time at once.
+    """Ctrl-C or SIGTERM ends a run between two lines; the second time at once.
 
     Attributes
     ----------
@@ -22,14 +26,15 @@ class Interrupts:
 
     def __init__(self) -> None:
         self.wanted = self._waits = False
-        self._before: Any = None
+        self._before: list[Any] = []
 
     def __enter__(self) -> Interrupts:
-        self._before = signal.signal(signal.SIGINT, self._take)
+        self._before = [signal.signal(number, self._take) for number in _SIGNALS]
         return self
 
     def __exit__(self, *_: object) -> None:
-        signal.signal(signal.SIGINT, self._before)
+        for number, before in zip(_SIGNALS, self._before, strict=True):
+            signal.signal(number, before)
 
     def wait(self, until: Callable[[], _T]) -> _T | None:
         """Call a function that waits; None if it is interrupted."""

@@ -82,8 +82,11 @@ class LineTarget:
             else:
                 lines = header + lines
         rest = memoryview(lines)
-        while rest:
-            rest = rest[os.write(self._descriptor, rest) :]
+        try:
+            while rest:
+                rest = rest[os.write(self._descriptor, rest) :]
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, self.path or "standard output") from None
         self.written += len(lines)
 
     def close(self) -> None:

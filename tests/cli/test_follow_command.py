@@ -17,6 +17,7 @@ import pytest
 
 import fuzzytrack as ft
 from fuzzytrack.cli.app import app
+from fuzzytrack.recordings.live_state import LiveState
 
 ROOT = Path(__file__).resolve().parents[2]
 FIXED = ["--tracker", "fixed:alpha=0.5:beta=0.3", "--no-compile"]
@@ -187,18 +188,29 @@ def test_options_of_a_live_run_are_refused_without_follow(fails, plots, option):
     assert "give --follow as well" in fails("track", plots, *option)
 
 
-def test_ctrl_c_ends_a_run_with_its_sums_and_status_130(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_and_a_stop_end_a_run_with_its_sums_and_status_130(number, tmp_path):
     state = tmp_path / "state"
     with following(*FIXED, "--state", str(state)) as process:
         send(process, "t,x", "0,1", "1,2")
         for _ in range(3):
             answer(process)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         assert process.wait(PATIENCE) == 130
         said = process.stderr.read().decode()
     assert "3 lines; 2 answers; 1 track" in said
     assert "Traceback" not in said
-    assert state.exists()
+    assert LiveState.load(state).lines == 3
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_a_full_disk_ends_the_run_and_is_named(follow, monkeypatch):
+    full = os.open("/dev/full", os.O_WRONLY)
+    monkeypatch.setattr("fuzzytrack.io.line_target._STANDARD_OUTPUT", full)
+    status, _, said = follow("t,x\n0,1\n", *FIXED)
+    os.close(full)
+    assert status == 2
+    assert said.splitlines()[-1].startswith("error: standard output: No space left")
 
 
 def test_a_reader_that_goes_away_ends_the_run_without_a_traceback():
