@@ -12,7 +12,7 @@ from fuzzytrack.plurals import counted
 from fuzzytrack.testbed.block_bootstrap import RmsChange
 from fuzzytrack.testbed.comparison import Comparison
 from fuzzytrack.testbed.marks import BEST, WORSE, best_of
-from fuzzytrack.testbed.recorded_comparison import RecordedComparison
+from fuzzytrack.testbed.recorded_scores import RecordedComparison
 
 __all__ = ["print_comparison", "print_marks", "print_recorded"]
 

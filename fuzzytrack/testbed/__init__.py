@@ -2,7 +2,8 @@
 
 from fuzzytrack.testbed.comparison import Comparison, compare, compare_tracks
 from fuzzytrack.testbed.montecarlo import monte_carlo
-from fuzzytrack.testbed.recorded_comparison import RecordedComparison, compare_recorded
+from fuzzytrack.testbed.recorded_comparison import compare_recorded
+from fuzzytrack.testbed.recorded_scores import RecordedComparison
 from fuzzytrack.testbed.results import Results
 
 __all__ = [
