@@ -59,8 +59,6 @@ def open_source(file: str, form: TextForm = PLAIN) -> Iterator[CsvSource]:
             yield CsvSource(stream, form)
         except UnicodeDecodeError as error:
             raise _not_text(stream, error) from None
-        except csv.Error as error:
-            raise DataError(f"{stream.file}: row 1: not CSV: {error}") from None
 
 
 class CsvSource:

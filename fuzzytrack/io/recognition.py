@@ -183,8 +183,13 @@ def recognize(file: str, lines: Sequence[str], form: TextForm) -> Layout:
     rows = _rows(sample, form)
     if not rows:
         # Rows of blank cells, or the error of a row that is not CSV.
-        for _ in cells_of_lines(usable_lines(sample, form), delimiter):
-            pass
+        reader = cells_of_lines(usable_lines(sample, form), delimiter)
+        try:
+            for _ in reader:
+                pass
+        except csv.Error as error:
+            where = f"{file}: row {first + reader.line_num}"
+            raise DataError(f"{where}: not CSV: {error}") from None
         raise _is_empty(file)
     units: dict[str, str] = {}
     if form.columns is None:

@@ -130,6 +130,8 @@ class LiveTracks:
         self._rejected: Counter[str] = Counter()
         self.recent: dict[str, RecentRows] = {}
         self._swept = _SWEEP
+        # Line and time (s) of the last row; those that are put in their place come later.
+        self._last = 0, -math.inf
         self.counts = dict.fromkeys(("answers", "revisions", "late", "copies", "forgotten"), 0)
         self._gone = np.zeros(2, dtype=np.int64)
 
@@ -214,6 +216,7 @@ class LiveTracks:
         before = self._due(piece) if self.lateness else {}
         judged = self._cleaner.advance_live(piece)
         cleaned = judged.cleaned
+        self._see(judged.seen)
         if len(cleaned):
             columns = self._tracked(cleaned)
             if self.lateness:
@@ -225,8 +228,15 @@ class LiveTracks:
             return waiting
         late = np.zeros(len(waiting), dtype=np.bool_)
         late[np.unique(waiting.ids.codes, return_index=True)[1]] = True
+        self._see(waiting.take(late))
         self._place(waiting.take(late), parts)
         return waiting.take(~late)
+
+    def _see(self, rows: Piece) -> None:
+        """Keep the time of the last line, in whatever order lines are taken."""
+        if len(rows):
+            last = int(rows.rows.argmax())
+            self._last = max(self._last, (int(rows.rows[last]), float(rows.time[last])))
 
     def _tracked(self, cleaned: Piece) -> dict[str, Any]:
         """Columns of the answers to rows that are in order."""
@@ -347,6 +357,7 @@ class LiveTracks:
             "clock": np.array(self._cleaner.clock),
             "past": self._cleaner.past.copy(),
             "gone": np.array([*self._gone, self._swept]),
+            "last": np.array(self._last),
         }
 
     def set_common(self, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -355,6 +366,8 @@ class LiveTracks:
         self._cleaner.clock = period, now, int(fills)
         self._cleaner.past[:] = arrays["past"]
         *self._gone[:], self._swept = arrays["gone"].tolist()
+        line, time = arrays["last"].tolist()
+        self._last = int(line), time
 
     def numbers(self, ids: Sequence[str]) -> Array:
         """All that is known of tracks, shape (n_tracks, n_numbers); unknown ones are begun."""
@@ -398,7 +411,7 @@ class LiveTracks:
 
     def _sweep(self, silent: float) -> None:
         """Forget tracks that were silent for so long (s)."""
-        ids, now = self._cleaner.ids, self._cleaner.clock[1]
+        ids, now = self._cleaner.ids, self._last[1]
         if not ids:
             return
         known = self._cleaner.numbers(ids, self._axes)

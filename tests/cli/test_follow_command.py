@@ -138,6 +138,7 @@ def test_plots_that_are_too_late_and_faulty_lines_are_counted_and_the_first_is_n
         ("t,q\n0,1\n", "no columns x, y"),
         ("1,2\n3,4\n", "holds numbers"),
         ("", "is empty"),
+        ('\n"t"x,x\n0,1\n', "row 2: not CSV"),
         ("t,x\n", "holds no rows"),
         ("[1, 2]\n[2, 3]\n", "no column t, time"),
         ('{"t": 1\n', "not JSON"),

@@ -200,6 +200,17 @@ def test_silent_tracks_are_forgotten_and_memory_stays_flat():
     assert sorted(again.tracks.ids) == sorted(feed.tracks.ids)
 
 
+@pytest.mark.parametrize("size", [1, 500, 5000])
+def test_a_row_that_is_out_of_order_does_not_decide_what_is_forgotten(size):
+    feed = a_feed(id="id", forget=50.0)
+    lines = ["t,id,x", "0,old,1", *(f"{k / 50},a,1" for k in range(1, 4000)), "10,a,2"]
+    lines += [f"{80 + k / 100},b,1" for k in range(300)]
+    for start in range(0, len(lines), size):
+        feed.push([f"{line}\n".encode() for line in lines[start : start + size]])
+    assert feed.tracks.counts["forgotten"] == 1
+    assert feed.tracks.ids == ("a", "b")
+
+
 def test_other_plots_of_the_same_time_and_copies_of_late_ones_are_counted():
     feed = a_feed(lateness=5.0)
     rows = pushed(feed, "t,x\n0,0\n1,1\n2,2\n1,1\n1,9\n2,9\n2,2\n")
