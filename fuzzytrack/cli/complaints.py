@@ -110,6 +110,8 @@ def one_line(error: Exception) -> str:
         return printable(str(error))
     if isinstance(error, OSError) and error.filename is not None:
         return printable(f"error: {error.filename}: {error.strerror}")
+    if isinstance(error, OSError) and error.strerror:
+        return printable(f"error: {error.strerror}")
     return printable(f"error: {error}")
 
 

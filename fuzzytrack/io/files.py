@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
 import shutil
@@ -111,12 +112,29 @@ def whole_file(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Iterator[Pa
     target = check_output(path, inputs)
     draft = target.with_name(f".{target.stem}.{secrets.token_hex(4)}.part{target.suffix}")
     try:
-        yield draft
+        with _full_disk_named(path):
+            yield draft
         if target.exists():
             shutil.copymode(target, draft)
         os.replace(draft, target)
     finally:
         draft.unlink(missing_ok=True)
+
+
+# Of a write where there is no room: on the disk, for the user, in a file of this kind.
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+@contextmanager
+def _full_disk_named(path: PathLike) -> Iterator[None]:
+    """Say of which file it is that there is no room for it: writes to an open file do not."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise
+        reason = f"{os.strerror(error.errno)}; nothing was written"
+        raise OSError(error.errno, reason, os.fspath(path)) from error
 
 
 @contextmanager
@@ -143,7 +161,8 @@ def whole_folder(path: PathLike) -> Iterator[Path]:
     draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     draft.mkdir()
     try:
-        yield draft
+        with _full_disk_named(path):
+            yield draft
         os.replace(draft, target)
     finally:
         # A task that could not be stopped may still write into it.

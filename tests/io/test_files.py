@@ -1,8 +1,12 @@
+import errno
+import os
+
 import numpy as np
 import pytest
 from data_files import written
 
 from fuzzytrack.io import check_output, write_table
+from fuzzytrack.io.files import whole_file, whole_folder
 
 
 def test_replacing_keeps_the_mode_and_follows_links(tmp_path):
@@ -24,3 +28,18 @@ def test_a_folder_that_cannot_be_written_to(tmp_path, monkeypatch):
     monkeypatch.setattr("os.access", lambda path, mode: False)
     with pytest.raises(PermissionError, match="cannot be written to"):
         write_table(tmp_path / "a.csv", {"a": np.array([1.0])})
+
+
+@pytest.mark.parametrize("whole", [whole_file, whole_folder])
+def test_a_full_disk_is_said_of_the_file(tmp_path, whole):
+    path = tmp_path / "out.csv"
+    for number in (errno.ENOSPC, errno.EDQUOT):
+        with pytest.raises(OSError, match="nothing was written") as caught, whole(path):
+            raise OSError(number, "write error")
+        assert caught.value.filename == str(path)
+        assert caught.value.strerror.startswith(os.strerror(number))
+    # An error of another file, as one that is read meanwhile, stays what it is.
+    with pytest.raises(OSError, match="Input/output error") as caught, whole(path):
+        raise OSError(errno.EIO, "Input/output error", "plots.csv")
+    assert caught.value.filename == "plots.csv"
+    assert not list(tmp_path.iterdir())
