@@ -77,7 +77,7 @@ def print_recorded(found: RecordedComparison, decoder: PlotDecoder) -> None:
         paragraph(f"sigma: {sigma}")
     say_notes(found.notes)
     if found.lag is not None:
-        paragraph(_lag_sentence(found))
+        paragraph(found.lag.sentence)
     say()
     (_print_errors if found.has_truth else _print_innovations)(found, unit)
     say()
@@ -89,18 +89,6 @@ def _title(found: RecordedComparison, scored: int) -> str:
         f"{counted(found.tracks, 'track')}, {scored} of {counted(found.plots, 'plot')} scored: "
         "all after the start of their track"
     )
-
-
-def _lag_sentence(found: RecordedComparison) -> str:
-    assert found.lag is not None
-    if found.lag.unknown:
-        return f"clock: no lag of the plots behind the truth was taken off: {found.lag.unknown}."
-    lag = with_error(found.lag.lag, found.lag.error)
-    if not found.lag.taken_off:
-        return f"clock: plots and truth agree; the fitted lag is {lag} s."
-    size = with_error(abs(found.lag.lag), found.lag.error)
-    where = "behind" if found.lag.lag > 0 else "ahead of"
-    return f"clock: the plots are {size} s {where} the truth (fitted), which was taken off."
 
 
 def _text(change: RmsChange | None) -> str:

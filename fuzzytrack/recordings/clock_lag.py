@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.html_reprs import as_text
 from fuzzytrack.io.recording import Recording, Track
 from fuzzytrack.recordings.truth import true_positions
 from fuzzytrack.reprs import summary
@@ -54,6 +55,17 @@ class ClockLag:
     def taken_off(self) -> float:
         """What is to be taken off the times of plots (s): 0 if it may be chance."""
         return self.lag if abs(self.lag) > _CHANCE * self.error else 0.0
+
+    @property
+    def sentence(self) -> str:
+        """What was found and done, in words."""
+        if self.unknown:
+            return f"clock: no lag of the plots behind the truth was taken off: {self.unknown}."
+        if not self.taken_off:
+            lag = as_text(self.lag, self.error)
+            return f"clock: plots and truth agree; the fitted lag is {lag} s."
+        size, where = as_text(abs(self.lag), self.error), "behind" if self.lag > 0 else "ahead of"
+        return f"clock: the plots are {size} s {where} the truth (fitted), which was taken off."
 
 
 def fitted_lag(tracks: Sequence[Track], true: Recording) -> ClockLag:

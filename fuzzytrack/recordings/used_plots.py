@@ -5,22 +5,25 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from fuzzytrack.arrays import Array
 from fuzzytrack.io.angles import unwrapped
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Recording, Track, read_recording
+from fuzzytrack.recordings.clock_lag import ClockLag, fitted_lag
 from fuzzytrack.recordings.judge import Judge
 from fuzzytrack.recordings.judging import GateWidth, judge_of
 from fuzzytrack.recordings.preparation import DEFAULT_TRACKER, inputs_of, noise_differs, suited
 from fuzzytrack.recordings.ragged import run_judged_tracks, sigmas_of
 from fuzzytrack.recordings.restarts import divided
-from fuzzytrack.recordings.truth import read_truth
+from fuzzytrack.recordings.truth import read_truth, true_positions
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.catalog import as_tracker
@@ -70,6 +73,19 @@ class UsedPlots:
     def has_sigma(self) -> bool:
         """Whether the noise is known."""
         return all(track.sigma is not None for track in self.tracks)
+
+    @cached_property
+    def lag(self) -> ClockLag | None:
+        """Fitted lag of the plots; None without a truth, or if it has the clock of the plots."""
+        if self.true is None or not self.true_has_own_clock:
+            return None
+        return fitted_lag(self.tracks, self.true)
+
+    def truth_of(self, track: Track) -> Array | None:
+        """True positions at the plots of a track, the lag taken off; None without a truth."""
+        if self.true is None:
+            return None
+        return true_positions(track, self.true, 0.0 if self.lag is None else self.lag.taken_off)
 
     @property
     def notes(self) -> tuple[str, ...]:

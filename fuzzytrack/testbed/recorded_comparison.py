@@ -14,10 +14,8 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.reading import Reading
-from fuzzytrack.recordings.clock_lag import fitted_lag
 from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.preparation import suited
-from fuzzytrack.recordings.truth import true_positions
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
 from fuzzytrack.tasks import Progress, part
 from fuzzytrack.testbed.block_bootstrap import rms_change
@@ -122,10 +120,7 @@ def compare_used(
     DataError, ValueError
         As `compare_recorded`.
     """
-    lag = None
-    if used.true is not None and used.true_has_own_clock:
-        lag = fitted_lag(used.tracks, used.true)
-    rows = _Rows.of(used, 0.0 if lag is None else lag.taken_off)
+    rows = _Rows.of(used)
     runs = {}
     made = as_trackers(trackers)
     for number, (name, text) in enumerate(trackers.items(), 1):
@@ -152,7 +147,7 @@ def compare_used(
         n_axes=rows.plots.shape[1],
         before=_root_mean(squared_distance((rows.plots - rows.before)[scored])),
         has_sigma=used.has_sigma,
-        lag=lag,
+        lag=used.lag,
         known=int(known.sum()),
         measured_rmse=_root_mean(squared_distance((rows.plots - rows.truth)[known])),
         seed=seed,
@@ -186,7 +181,7 @@ class _Rows:
     count: NDArray[np.int64]
 
     @classmethod
-    def of(cls, used: UsedPlots, lag: float) -> _Rows:
+    def of(cls, used: UsedPlots) -> _Rows:
         tracks = used.tracks
         seen: list[Mask] = [np.asarray(~np.isnan(t.plots).any(axis=1)) for t in tracks]
         before, truth = [], []
@@ -194,10 +189,8 @@ class _Rows:
             last = np.maximum.accumulate(np.where(there, np.arange(len(there)), -1))
             place = np.concatenate([[-1], last[:-1]])
             before.append(np.where(place[:, None] < 0, np.nan, track.plots[place]))
-            if used.true is None:
-                truth.append(np.full(track.plots.shape, np.nan))
-            else:
-                truth.append(true_positions(track, used.true, lag))
+            true = used.truth_of(track)
+            truth.append(np.full(track.plots.shape, np.nan) if true is None else true)
         return cls(
             np.concatenate([track.plots for track in tracks]),
             np.concatenate(before),

@@ -18,7 +18,6 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.ragged import batches
-from fuzzytrack.recordings.truth import true_positions
 from fuzzytrack.recordings.used_plots import read_used_plots
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import streams, truth_of_runs
@@ -291,7 +290,7 @@ def recorded(
         How they are read. Without a standard deviation of the plots it is estimated from them.
     truth : str or path, optional
         True positions, see `fuzzytrack.recordings.truth.read_truth`. Where they are not known,
-        plots are not scored.
+        plots are not scored. A lag between the clocks of two files is fitted, and taken off.
     gate : float, "auto" or None
         As for `fuzzytrack.track`: plots that its default tracker does not use are missed plots, so
         that they do not decide what is tuned.
@@ -309,9 +308,10 @@ def recorded(
             track.id,
             track.time,
             track.plots,
-            None if used.true is None else true_positions(track, used.true),
+            used.truth_of(track),
             track.sigma,
         )
         for track in used.tracks
     )
-    return TuningData(used.name, found, axes_differ=used.axes_differ, notes=used.notes)
+    notes = used.notes if used.lag is None else (*used.notes, used.lag.sentence)
+    return TuningData(used.name, found, axes_differ=used.axes_differ, notes=notes)

@@ -159,3 +159,18 @@ def test_notes_and_noise_of_several_recordings_are_joined():
     assert data.notes == ("plots: 1 plot beyond the gate, not used",)
     assert [track.group for track in data.tracks] == [0, 1]
     assert not data.axes_differ
+
+
+def test_a_lag_between_plots_and_their_truth_is_taken_off(tmp_path):
+    t = np.arange(0.0, 600.0, 2.0)
+    x, y = 1000 * np.sin(t / 30), 800 * np.cos(t / 40)
+    rng = np.random.default_rng(5)
+    plots = {"t": t + 2.5, "x": x + rng.normal(size=len(t)), "y": y + rng.normal(size=len(t))}
+    truth = tmp_path / "truth.csv"
+    rows = [f"{a},{b},{c}" for a, b, c in zip(t, x, y, strict=True)]
+    truth.write_text("\n".join(["t,x,y", *rows]))
+    data = recorded(plots, Reading.of(sigma=1.0), truth=truth)
+    (one,) = data.tracks
+    error = one.plots - one.truth
+    assert np.nanstd(error) < 1.3
+    assert "s behind the truth (fitted), which was taken off" in data.notes[-1]
