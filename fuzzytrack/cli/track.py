@@ -23,6 +23,7 @@ from fuzzytrack.cli.output import (
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.cli.plot_options import gate_width, reads_plots
+from fuzzytrack.io.column_names import is_unit
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.formats import check_table
@@ -45,7 +46,7 @@ _LARGE = 100_000_000
 _LISTED = 20
 # Characters of an identity that are printed, at most.
 _LONGEST = 40
-_HEADS = ("plots", "missed", "duration (s)", "innovation RMS", "mean α", "mean β")
+_HEADS = ("plots", "missed", "duration (s)", "innovation RMS ({})", "mean α", "mean β")
 
 
 @reads_plots
@@ -304,9 +305,19 @@ def _print_table(run: _Run) -> None:
     if len(rows) != 1:
         rows += [[]] if rows else []
         rows.append([f"all {run.total.tracks}" if columns.id else "track", *_row(run.total)])
-    print_table([columns.id, *_HEADS], rows)
+    unit = _unit(run.decoder)
+    print_table([columns.id, *(head.format(unit) for head in _HEADS)], rows)
     for fault in run.findings.sentences():
         say(fault)
+
+
+def _unit(decoder: PlotDecoder) -> str:
+    """Unit of positions and of innovations; Cartesian positions are in that of their columns."""
+    columns = decoder.columns
+    if columns.position == "angle":
+        return "deg" if decoder.period == 360 else "rad"
+    unit = columns.unit(columns.axes[0]) if columns.position == "cartesian" else ""
+    return unit if is_unit(unit) else "m"
 
 
 def _row(totals: Totals) -> list[str]:

@@ -33,6 +33,7 @@ def test_track_prints_a_summary(run, plots):
         "(s)",
         "innovation",
         "RMS",
+        "(m)",
         "mean",
         "α",
         "mean",

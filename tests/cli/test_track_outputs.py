@@ -190,3 +190,20 @@ def test_a_pipe_is_read_by_one_process(fails, tmp_path):
     feeder.join()
     assert "cannot be read by several processes; save it to a file" in message
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("column", "options", "unit"),
+    [
+        ("x", (), "m"),
+        ("x_km", ("--axes", "x_km"), "km"),
+        ("x (slant)", ("--axes", "x (slant)"), "m"),
+        ("bearing", ("--angle", "bearing"), "deg"),
+        ("bearing_rad", ("--angle", "bearing_rad"), "rad"),
+    ],
+)
+def test_innovations_have_the_unit_of_their_positions(run, tmp_path, column, options, unit):
+    path = tmp_path / "plots.csv"
+    path.write_text(f"t,{column}\n0,0\n1,1\n2,2\n3,3\n")
+    printed = run("track", path, "--tracker", "fixed:alpha=0.5:beta=0.2", *options).stdout
+    assert f"innovation RMS ({unit})  " in printed
