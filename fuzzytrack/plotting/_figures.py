@@ -19,6 +19,7 @@ from matplotlib.ticker import (
     MaxNLocator,
     NullFormatter,
 )
+from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
@@ -119,16 +120,17 @@ def figure_of(ax: Axes) -> Figure:
 def legend_below(ax: Axes) -> None:
     """Legend under the x axis, where it covers nothing, in as many columns as there is room for."""
     handles, labels = ax.get_legend_handles_labels()
-    box, figure = ax.get_position(), figure_of(ax)
-    width, height = box.width * figure.get_figwidth() * 72, box.height * figure.get_figheight() * 72
+    figure = figure_of(ax)
+    width = ax.get_position().width * figure.get_figwidth() * 72
     # Widths in points: of a letter, and of the line before the words. The legend may be wider
     # than the axes, since there is room under the labels of the y axis.
     columns = max(1, int(1.3 * width / (5.0 * max(map(len, labels)) + 42)))
     rows = -(-len(handles) // columns)
     ax.legend(
         loc="upper center",
-        # Clears the axis label in a panel of any height.
-        bbox_to_anchor=(0.5, -42 / height),
+        # Clears the axis label however high the panel is, also once a long legend shortens it.
+        bbox_to_anchor=(0.5, 0.0),
+        bbox_transform=ax.transAxes + ScaledTranslation(0.0, -42 / 72, figure.dpi_scale_trans),
         ncols=-(-len(handles) // rows),
         frameon=False,
         borderaxespad=0.0,

@@ -143,3 +143,14 @@ def test_legends_use_the_room_there_is():
         line.set_label("short")
     shared.legend_below(ax)
     assert ax.get_legend()._ncols == 4
+
+
+def test_long_legends_clear_the_label_of_the_axis():
+    figure, (ax,) = shared.panels("ax", None, 1, columns=1, size=(6.4, 4.0))
+    for k in range(9):
+        ax.plot([k], label=f"a very long name of a tracker with many settings {k}")
+    ax.set_xlabel("time (s)")
+    shared.legend_below(ax)
+    figure.draw_without_rendering()
+    label = ax.xaxis.label.get_window_extent()
+    assert ax.get_legend().get_window_extent().y1 < label.y0
