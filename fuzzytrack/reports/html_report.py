@@ -175,10 +175,11 @@ def _picture(key: str, figure: Figure) -> str:
         figure.savefig(drawing, format="png", dpi=160)
     data = base64.b64encode(drawing.getvalue()).decode("ascii")
     heading, reading = CAPTIONS[key]
+    # A number and its sign stay on one line.
+    caption = escape(reading).replace(" %", "&nbsp;%")
     return (
         f'<figure id="{key}">\n<img alt="{escape(heading)}" src="data:image/{kind};base64,{data}">'
-        f"\n<figcaption><strong>{escape(heading)}.</strong> {escape(reading)}</figcaption>"
-        "\n</figure>"
+        f"\n<figcaption><strong>{escape(heading)}.</strong> {caption}</figcaption>\n</figure>"
     )
 
 

@@ -170,6 +170,10 @@ def _draw_trajectories(results: Results, labels: Sequence[str]) -> Figure:
     plot_trajectories(run.time, run.truth, run.plots, tracks, ax=whole)
     # One legend serves both.
     whole.get_legend().remove()
+    # Markers of every scan would cover the lines beneath; the close-up shows them.
+    for line in whole.lines:
+        if line.get_label() in tracks:
+            line.set_marker("")
     worst = results.first_scored + int(np.nanargmax(np.fmax.reduce(away)))
     there = run.truth[worst]
     plot_trajectories(

@@ -376,6 +376,17 @@ def test_a_failure_leaves_the_file_as_it_was(results, tmp_path, monkeypatch):
         write_report(tmp_path / "none" / "report.html", results)
 
 
+def test_only_the_close_up_marks_every_scan(results):
+    whole, close = report_pictures.report_pictures(results)["trajectories"].axes
+
+    def marked(ax):
+        lines = {line.get_label(): line.get_marker() for line in ax.lines}
+        return [bool(marker) for name, marker in lines.items() if re.match(r"\d\. ", name)]
+
+    assert marked(whole) == [False] * 4
+    assert marked(close) == [True] * 4
+
+
 def test_pictures_name_every_tracker_and_keep_their_colors(results):
     pictures = report_pictures.report_pictures(results)
     assert list(pictures) == list(report_pictures.CAPTIONS)
