@@ -55,6 +55,8 @@ html_math_renderer = "mathml"
 autosummary_generate = True
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
+# Spelled out, what numpy takes for an array fills several lines for each argument.
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "Array", "Mask", "NDArray")}
 # Members are listed by autodoc; numpydoc would list them twice.
 numpydoc_show_class_members = False
 
