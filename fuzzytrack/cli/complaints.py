@@ -128,12 +128,18 @@ def _usage(error: Any, program: Any) -> str:
     return printable(f"error: {message}{where}")
 
 
+# A longer list of commands is cut short.
+_NAMED = 6
+
+
 def _option_meant(error: Any, option: str, program: Any) -> str:
     """What to write for an option that a command has not: a longer or shorter word, or none."""
     for other in getattr(error, "possibilities", None) or ():
         if other.startswith(option) or option.startswith(other):
             return f"; did you mean {other}?"
     others = _commands_with(option, program)
+    if len(others) > _NAMED:
+        others[4:] = [f"and {len(others) - 4} other commands"]
     return f"; it belongs to {', '.join(others)}" if others else ""
 
 

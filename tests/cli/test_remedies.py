@@ -118,6 +118,10 @@ def test_parameters_in_a_list_of_trackers(fails):
     ("words", "message"),
     [
         ("track a.csv --runs 5", "error: No such option: --runs; it belongs to demo, compare, "),
+        (
+            "surface maneuver --json",
+            "error: No such option: --json; it belongs to demo, sample, track, compare, and ",
+        ),
         ("cache --at E=1", "error: No such option: --at; it belongs to surface, rulebase explain"),
         (
             "track a.csv --trackers maneuver",
