@@ -29,20 +29,22 @@ class _Pause:
 
     def __init__(self):
         self.depth = 0
-        self.stopped = None
+        self.stopped = []
 
     def start(self):
         self.depth += 1
-        if self.depth == 1:
-            self.stopped = _running_coverage()
-            if self.stopped is not None:
-                self.stopped.stop()
+        if self.depth > 1:
+            return
+        # In processes that tests are distributed to, several measure at once: when one of them
+        # stops, the one before it goes on.
+        while (running := _running_coverage()) is not None:
+            running.stop()
+            self.stopped.append(running)
 
     def end(self):
         self.depth -= 1
-        if self.depth == 0 and self.stopped is not None:
-            self.stopped.start()
-            self.stopped = None
+        while self.depth == 0 and self.stopped:
+            self.stopped.pop().start()
 
 
 def _running_coverage():
