@@ -219,7 +219,12 @@ figure.picture { display: inline-block; width: 100%; margin: 0 0 1.5rem; vertica
 .bd-article figure.picture figcaption, figure.picture .legend { margin: 0; text-align: left; }
 figure.picture pre { white-space: pre-wrap; font-size: .8rem; margin: 0; text-align: left; }
 figure.picture figcaption p { margin: .3rem 0; }
-@media (min-width: 60rem) { figure.picture:not(.wide) { width: 49%; } }
+@media (min-width: 60rem) {
+section:has(> figure.picture) {
+  display: grid; grid-template-columns: 1fr 1fr; grid-auto-flow: row dense; column-gap: 2%;
+}
+section:has(> figure.picture) > :not(figure.picture), figure.picture.wide { grid-column: 1 / -1; }
+}
 </style>
 ```
 """

@@ -13,7 +13,7 @@ __all__ = ["noise_json", "noise_sentence"]
 
 def noise_sentence(decoder: PlotDecoder) -> str:
     """Standard deviations of the plots in words; empty if they are not known."""
-    if not decoder.noise:
+    if set(decoder.noise) <= {None}:
         return ""
     errors = decoder.noise_errors or (None,) * len(decoder.noise)
     shown = [_one_noise(*pair) for pair in zip(decoder.noise, errors, strict=True)]
