@@ -16,7 +16,7 @@ def noise_sentence(decoder: PlotDecoder) -> str:
     if set(decoder.noise) <= {None}:
         return ""
     errors = decoder.noise_errors or (None,) * len(decoder.noise)
-    shown = [_one_noise(*pair) for pair in zip(decoder.noise, errors, strict=True)]
+    shown = [_one_noise(*each) for each in zip(decoder.noise, errors, _units(decoder), strict=True)]
     if len(set(shown)) == 1 and not decoder.noise_is_polar:
         return shown[0]
     names = _noise_names(decoder)
@@ -28,11 +28,24 @@ def _noise_names(decoder: PlotDecoder) -> tuple[str, ...]:
     return columns.read if decoder.noise_is_polar else columns.axes
 
 
-def _one_noise(sigma: float | str | None, error: float | None) -> str:
+def _units(decoder: PlotDecoder) -> list[str]:
+    """Unit of each standard deviation; empty for Cartesian positions, in the unit of their file."""
+    count = len(decoder.noise)
+    if decoder.noise_is_polar:
+        return ["m", *["deg"] * (count - 1)]
+    if decoder.columns.position == "cartesian":
+        return [""] * count
+    # A bare angle has a period; places on the earth are tracked in meters.
+    return [{None: "m", 360.0: "deg"}.get(decoder.period, "rad")] * count
+
+
+def _one_noise(sigma: float | str | None, error: float | None, unit: str) -> str:
     if isinstance(sigma, str):
         return f"column {sigma}"
     value = math.nan if sigma is None else sigma
-    return show(value) if error is None else f"{with_error(value, error)} (estimated)"
+    number = show(value) if error is None else with_error(value, error)
+    unit = f" {unit}" if unit else ""
+    return f"{number}{unit}" if error is None else f"{number}{unit} (estimated)"
 
 
 def noise_json(decoder: PlotDecoder) -> dict[str, Any]:
