@@ -41,6 +41,21 @@ class Command(TyperCommand):
                 raise
             raise ValueError(message) from error
 
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write what the command takes, options that belong together under their heading."""
+        found: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
+        for each in self.get_params(ctx):
+            heading = getattr(each, "rich_help_panel", None) or "Options"
+            if each.param_type_name == "argument":
+                heading = "Arguments"
+            record = each.get_help_record(ctx)
+            if record is not None:
+                found.setdefault(heading, []).append(record)
+        for heading, records in found.items():
+            if records:
+                with formatter.section(heading):
+                    formatter.write_dl(records)
+
 
 class Commands(TyperGroup):
     """A group of commands; an error in any of them becomes one line on stderr."""

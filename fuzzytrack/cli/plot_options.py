@@ -19,89 +19,127 @@ __all__ = ["gate_width", "number_or", "plot_reading", "reads_plots"]
 _Text = str | None
 
 
-def _option(metavar: str, help: str, *names: str) -> Any:
-    return typer.Option(*names, metavar=metavar, help=help)
+# Headings of these options in the help of a command.
+_COLUMNS, _NOISE = "Columns of the plots", "Noise of the plots"
+_FAULTS, _FORM = "Faults of the plots", "Form of the file"
+
+
+def _option(heading: str, metavar: str, help: str) -> Any:
+    return typer.Option(metavar=metavar, help=help, rich_help_panel=heading)
 
 
 def plot_reading(
     time: Annotated[
-        _Text, _option("COL", "Column of time (s, dates), or DATE,TIME. [default: t, time…]")
+        _Text,
+        _option(_COLUMNS, "COL", "Column of time (s, dates), or DATE,TIME. [default: t, time…]"),
     ] = None,
     time_unit: Annotated[
-        _Text, _option("s|ms|us|ns", "Unit of numeric times. [default: by name or size]")
+        _Text, _option(_COLUMNS, "s|ms|us|ns", "Unit of numeric times. [default: by name or size]")
     ] = None,
     wrap: Annotated[
-        str, _option("S|auto|none", "Period of a clock that starts again, in seconds.")
+        str, _option(_COLUMNS, "S|auto|none", "Period of a clock that starts again, in seconds.")
     ] = "auto",
     id: Annotated[
-        _Text, _option("COL", "Column that identifies the track. [default: one track]")
+        _Text, _option(_COLUMNS, "COL", "Column that identifies the track. [default: one track]")
     ] = None,
     axes: Annotated[
-        _Text, _option("COL,COL", "Columns of position, m. [default: x,y,z or x_m,y_m,z_m]")
+        _Text,
+        _option(_COLUMNS, "COL,COL", "Columns of position, m. [default: x,y,z or x_m,y_m,z_m]"),
     ] = None,
     polar: Annotated[
         _Text,
         _option(
-            "RANGE,AZIMUTH[,ELEVATION]", "Columns of polar plots: m, or as range_km says; degrees."
+            _COLUMNS,
+            "RANGE,AZIMUTH[,ELEVATION]",
+            "Columns of polar plots: m, or as range_km says; degrees.",
         ),
     ] = None,
     azimuth_from: Annotated[
-        str, _option("north|east", "Azimuth clockwise from north, or the other way from east.")
+        str,
+        _option(
+            _COLUMNS, "north|east", "Azimuth clockwise from north, or the other way from east."
+        ),
     ] = "north",
     geodetic: Annotated[
-        _Text, _option("LAT,LON[,ALT]", "Columns of latitude and longitude, in degrees.")
+        _Text, _option(_COLUMNS, "LAT,LON[,ALT]", "Columns of latitude and longitude, in degrees.")
     ] = None,
-    angle: Annotated[_Text, _option("COL", "Column of a bare angle, in degrees.")] = None,
+    angle: Annotated[_Text, _option(_COLUMNS, "COL", "Column of a bare angle, in degrees.")] = None,
     cartesian: Annotated[
-        bool, typer.Option("--cartesian", help="Take --axes as positions whatever their names.")
+        bool,
+        typer.Option(
+            "--cartesian",
+            rich_help_panel=_COLUMNS,
+            help="Take --axes as positions whatever their names.",
+        ),
     ] = False,
     site: Annotated[
-        _Text, _option("LAT,LON[,ALT]", "Place of the sensor, in degrees and meters.")
+        _Text, _option(_COLUMNS, "LAT,LON[,ALT]", "Place of the sensor, in degrees and meters.")
     ] = None,
     own_ship: Annotated[
-        _Text, _option("COL,COL", "Columns of the position of a moving sensor, m.")
+        _Text, _option(_COLUMNS, "COL,COL", "Columns of the position of a moving sensor, m.")
     ] = None,
     own_heading: Annotated[
-        _Text, _option("COL", "Column of its heading (degrees), for relative azimuths.")
+        _Text, _option(_COLUMNS, "COL", "Column of its heading (degrees), for relative azimuths.")
     ] = None,
     sigma: Annotated[
         _Text,
         _option(
+            _NOISE,
             "S|S,S|COL|COL,COL|auto",
             "Standard deviation of the plots, m; or its columns. [default: auto]",
         ),
     ] = None,
-    sigma_range: Annotated[_Text, _option("S|COL", "The same of range, m.")] = None,
-    sigma_azimuth: Annotated[_Text, _option("S|COL", "The same of azimuth, degrees.")] = None,
-    sigma_elevation: Annotated[_Text, _option("S|COL", "The same of elevation, degrees.")] = None,
+    sigma_range: Annotated[_Text, _option(_NOISE, "S|COL", "The same of range, m.")] = None,
+    sigma_azimuth: Annotated[
+        _Text, _option(_NOISE, "S|COL", "The same of azimuth, degrees.")
+    ] = None,
+    sigma_elevation: Annotated[
+        _Text, _option(_NOISE, "S|COL", "The same of elevation, degrees.")
+    ] = None,
     valid: Annotated[
         list[str] | None,
-        _option("COL=LOW:HIGH", "Values that are positions; others are missed plots."),
+        _option(_FAULTS, "COL=LOW:HIGH", "Values that are positions; others are missed plots."),
     ] = None,
     duplicates: Annotated[
-        str, _option("error|first|last|mean", "What to do with equal times in a track.")
+        str, _option(_FAULTS, "error|first|last|mean", "What to do with equal times in a track.")
     ] = "error",
     stale: Annotated[
-        bool, typer.Option("--stale", help="Take a position that repeats as a missed plot.")
+        bool,
+        typer.Option(
+            "--stale",
+            rich_help_panel=_FAULTS,
+            help="Take a position that repeats as a missed plot.",
+        ),
     ] = False,
     least_step: Annotated[
-        _Text, _option("S", "Shortest time to start a track with, s. [default: by the plots]")
+        _Text,
+        _option(_FAULTS, "S", "Shortest time to start a track with, s. [default: by the plots]"),
     ] = None,
     max_gap: Annotated[
-        str, _option("S|auto|none", "A longer time without a plot ends the track, in seconds.")
+        str,
+        _option(_FAULTS, "S|auto|none", "A longer time without a plot ends the track, in seconds."),
     ] = "auto",
     max_coast: Annotated[
-        _Text, _option("S", "Leave out rows without a plot after this time, in seconds.")
+        _Text, _option(_FAULTS, "S", "Leave out rows without a plot after this time, in seconds.")
     ] = None,
-    delimiter: Annotated[_Text, _option("CHAR|tab", "Between cells. [default: recognized]")] = None,
-    decimal: Annotated[_Text, _option(".|,", "Decimal mark. [default: recognized]")] = None,
-    na: Annotated[_Text, _option("A,B", "More words for a missing number: NULL,-999.")] = None,
-    comment: Annotated[str, _option("CHAR", "Lines that begin with it are left out.")] = "#",
+    delimiter: Annotated[
+        _Text, _option(_FORM, "CHAR|tab", "Between cells. [default: recognized]")
+    ] = None,
+    decimal: Annotated[_Text, _option(_FORM, ".|,", "Decimal mark. [default: recognized]")] = None,
+    na: Annotated[
+        _Text, _option(_FORM, "A,B", "More words for a missing number: NULL,-999.")
+    ] = None,
+    comment: Annotated[str, _option(_FORM, "CHAR", "Lines that begin with it are left out.")] = "#",
     columns: Annotated[
-        _Text, _option("A,B,C", "Names of the columns, for a file that has none.")
+        _Text, _option(_FORM, "A,B,C", "Names of the columns, for a file that has none.")
     ] = None,
-    format: Annotated[_Text, _option("NAME", "Format of the file. [default: by its name]")] = None,
-    sort: Annotated[bool, typer.Option("--sort", help="Put the plots in order of time.")] = False,
+    format: Annotated[
+        _Text, _option(_FORM, "NAME", "Format of the file. [default: by its name]")
+    ] = None,
+    sort: Annotated[
+        bool,
+        typer.Option("--sort", rich_help_panel=_FAULTS, help="Put the plots in order of time."),
+    ] = False,
 ) -> Reading:
     """How plots are read, from what the options say."""
     times = None if time is None else options.names(time, "--time")

@@ -40,6 +40,8 @@ from fuzzytrack.trackers.lane_tracker import LaneTracker
 __all__ = ["track"]
 
 
+# Headings in the help.
+_LARGE_JOBS, _LIVE = "Large recordings", "Live feeds"
 # Bytes of a file above which it is tracked in pieces by default.
 _LARGE = 100_000_000
 # With more tracks than this, only totals are printed.
@@ -83,45 +85,84 @@ def track(
     ] = None,
     chunk_rows: Annotated[
         int | None,
-        typer.Option(min=1, metavar="N", help="Hold N rows at a time. [default: all if few]"),
+        typer.Option(
+            min=1,
+            metavar="N",
+            help="Hold N rows at a time. [default: all if few]",
+            rich_help_panel=_LARGE_JOBS,
+        ),
     ] = None,
     jobs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Processes of this computer; -o is a folder.")
+        int,
+        typer.Option(
+            min=1,
+            metavar="N",
+            help="Processes of this computer; -o is a folder.",
+            rich_help_panel=_LARGE_JOBS,
+        ),
     ] = 1,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Dask cluster; -o is a folder.")
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Dask cluster; -o is a folder.", rich_help_panel=_LARGE_JOBS
+        ),
     ] = None,
     partitions: Annotated[
-        int, typer.Option(min=1, metavar="P", help="Tasks and files that tracks are divided among.")
+        int,
+        typer.Option(
+            min=1,
+            metavar="P",
+            help="Tasks and files that tracks are divided among.",
+            rich_help_panel=_LARGE_JOBS,
+        ),
     ] = 16,
     follow_feed: Annotated[
         bool,
-        typer.Option("--follow", help="Read lines from standard input, and answer each at once."),
+        typer.Option(
+            "--follow",
+            help="Read lines from standard input, and answer each at once.",
+            rich_help_panel=_LIVE,
+        ),
     ] = False,
     lateness: Annotated[
         float | None,
         typer.Option(
-            metavar="S", help="With --follow, put plots up to S seconds late in place. [default: 0]"
+            metavar="S",
+            help="With --follow, put plots up to S seconds late in place. [default: 0]",
+            rich_help_panel=_LIVE,
         ),
     ] = None,
     forget: Annotated[
         float | None,
-        typer.Option(metavar="S", help="With --follow, forget tracks silent for S seconds."),
+        typer.Option(
+            metavar="S",
+            help="With --follow, forget tracks silent for S seconds.",
+            rich_help_panel=_LIVE,
+        ),
     ] = None,
     state: Annotated[
         str | None,
-        typer.Option(metavar="FILE", help="With --follow, save the state, and go on from it."),
+        typer.Option(
+            metavar="FILE",
+            help="With --follow, save the state, and go on from it.",
+            rich_help_panel=_LIVE,
+        ),
     ] = None,
     feed: Annotated[
         str | None,
         typer.Option(
             metavar="again|onward",
             help="From a state, lines come from the first one again, or go on. [default: again]",
+            rich_help_panel=_LIVE,
         ),
     ] = None,
     compiled: Annotated[
         bool,
-        typer.Option("--compile/--no-compile", help="With --follow, compile before answering."),
+        typer.Option(
+            "--compile/--no-compile",
+            help="With --follow, compile before answering.",
+            rich_help_panel=_LIVE,
+        ),
     ] = True,
     plugin: options.Plugins = None,
     json: options.Json = False,

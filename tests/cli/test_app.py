@@ -147,3 +147,16 @@ def test_interrupted_process(tmp_path):
         [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path
     )
     assert (done.returncode, done.stderr) == (130, "interrupted\n")
+
+
+def test_help_puts_options_that_belong_together_under_their_heading(run):
+    text = run("track", "--help").stdout
+    order = ["Arguments:", "Options:", "Columns of the plots:", "Noise of the plots:"]
+    order += ["Faults of the plots:", "Form of the file:", "Large recordings:", "Live feeds:"]
+    places = [text.index(f"\n{heading}\n") for heading in order]
+    assert places == sorted(places)
+    at = dict(zip(order, places, strict=True))
+    assert at["Options:"] < text.index("  -o, --output") < at["Columns of the plots:"]
+    assert at["Noise of the plots:"] < text.index("  --sigma-range") < at["Faults of the plots:"]
+    assert at["Live feeds:"] < text.index("  --state")
+    assert text.count("\n  --sigma ") == 1
