@@ -6,6 +6,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import parent_process
 from typing import TypeVar
@@ -66,7 +67,7 @@ def run_tasks(
             yield task, function(task)
         return
     waiting = iter(tasks)
-    running: dict[Future[tuple[Outcome, list[Warning]]], Task] = {}
+    running: dict[Future[tuple[Outcome | _Wrong, list[Warning]]], Task] = {}
     failures: Counter[Task] = Counter()
     try:
         while True:
@@ -78,7 +79,7 @@ def run_tasks(
                 task = running.pop(future)
                 try:
                     outcome, caught = future.result()
-                except (BrokenExecutor, ValueError):
+                except BrokenExecutor:
                     raise
                 except Exception:
                     failures[task] += 1
@@ -88,19 +89,38 @@ def run_tasks(
                 else:
                     for warning in caught:
                         warnings.warn(warning, stacklevel=2)
+                    if isinstance(outcome, _Wrong):
+                        raise outcome.error
                     yield task, outcome
     finally:
         for future in running:
             future.cancel()
 
 
+@dataclass(frozen=True)
+class _Wrong:
+    """In place of an outcome: the error of a task whose input is wrong.
+
+    Raised, it would look like a ValueError of the executor's own; Dask's has one if a worker dies.
+    """
+
+    error: ValueError
+
+
 def _with_warnings(
     function: Callable[[Task], Outcome], task: Task
-) -> tuple[Outcome, list[Warning]]:
+) -> tuple[Outcome | _Wrong, list[Warning]]:
     """What a function returns for a task, and the warnings that it issues in another process."""
     if parent_process() is None:
-        return function(task), []
+        return _outcome(function, task), []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("default")
-        outcome = function(task)
+        outcome = _outcome(function, task)
     return outcome, [w.message for w in caught if isinstance(w.message, Warning)]
+
+
+def _outcome(function: Callable[[Task], Outcome], task: Task) -> Outcome | _Wrong:
+    try:
+        return function(task)
+    except ValueError as error:
+        return _Wrong(error)

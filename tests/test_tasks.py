@@ -85,7 +85,8 @@ def test_a_lost_task_is_done_again(monkeypatch):
     ("errors", "tries"),
     [
         ([AttributeError("lost")] * 3, 3),
-        ([ValueError("wrong")], 1),
+        # The executor's own, as Dask's has one if a worker dies.
+        ([ValueError("unpacked")] * 3, 3),
         ([AttributeError("lost"), BrokenExecutor("broken")], 2),
     ],
 )
@@ -94,6 +95,17 @@ def test_a_task_that_fails_for_good_ends_the_job(monkeypatch, errors, tries):
     with pytest.raises(type(errors[-1]), match=str(errors[-1])):
         list(run_tasks(square, [4, 5], executor))
     assert executor.given.count(5) == tries
+    assert executor.canceled == [4]
+
+
+def test_a_task_with_wrong_input_is_not_tried_again(monkeypatch):
+    def refuse(task):
+        raise ValueError(f"no {task}")
+
+    executor = Scripted(monkeypatch)
+    with pytest.raises(ValueError, match="no 5"):
+        list(run_tasks(refuse, [4, 5], executor))
+    assert executor.given == [4, 5]
     assert executor.canceled == [4]
 
 
