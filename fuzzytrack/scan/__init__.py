@@ -1,0 +1,16 @@
+"""Track-while-scan: from the plots of a radar, without identities, to tracks."""
+
+from fuzzytrack.scan.part import Parameter, Part, parameter, parameters
+from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
+
+__all__ = [
+    "KINDS",
+    "STATUSES",
+    "Parameter",
+    "Part",
+    "Scan",
+    "TrackReports",
+    "parameter",
+    "parameters",
+]

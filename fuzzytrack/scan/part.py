@@ -1,0 +1,94 @@
+"""What all parts of a scan tracker have in common: declared parameters."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar
+
+from fuzzytrack.reprs import constructor_code
+
+__all__ = ["Parameter", "Part", "parameter", "parameters"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """What a number of a part means, and which values it can have.
+
+    Attributes
+    ----------
+    meaning : str
+        In words, for the schema and the documentation.
+    unit : str
+        ``m``, ``m/s``, ``rad``, ``scans``, ``nats`` …; empty for a pure number.
+    least, most : float
+        Limits.
+    above, below : bool
+        Whether the limits themselves are excluded.
+    whole : bool
+        Whether it is a whole number.
+    """
+
+    meaning: str
+    unit: str = ""
+    least: float = -math.inf
+    most: float = math.inf
+    above: bool = False
+    below: bool = False
+    whole: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """Allowed values in words."""
+        kind = "a whole number" if self.whole else "a number"
+        low = f" {'>' if self.above else '>='} {self.least:g}" if self.least > -math.inf else ""
+        high = f" {'<' if self.below else '<='} {self.most:g}" if self.most < math.inf else ""
+        return f"{kind}{low}{' and' if low and high else ''}{high}"
+
+    def allows(self, value: object) -> bool:
+        """Whether a value is allowed."""
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return False
+        if not math.isfinite(value) or (self.whole and value != int(value)):
+            return False
+        low = value > self.least if self.above else value >= self.least
+        high = value < self.most if self.below else value <= self.most
+        return low and high
+
+
+def parameter(default: float, meaning: str, unit: str = "", **limits: Any) -> Any:
+    """Field of a part's dataclass; the arguments after `default` are those of `Parameter`."""
+    return field(default=default, metadata={"parameter": Parameter(meaning, unit, **limits)})
+
+
+@dataclass(frozen=True, repr=False)
+class Part:
+    """A part of a scan tracker: a frozen dataclass whose numbers are declared by `parameter`.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range; names it, its value and what is allowed.
+    """
+
+    #: Where it comes from: a paper with its equation, or what was measured.
+    source: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        for name, declared in parameters(type(self)).items():
+            value = getattr(self, name)
+            if not declared.allows(value):
+                raise ValueError(f"{name} must be {declared.allowed}, got {value!r}")
+            object.__setattr__(self, name, int(value) if declared.whole else float(value))
+
+    def __repr__(self) -> str:
+        return constructor_code(self)
+
+
+def parameters(part: type[Part]) -> dict[str, Parameter]:
+    """Declared parameters of a kind of part, by name."""
+    return {
+        each.name: each.metadata["parameter"]
+        for each in fields(part)
+        if "parameter" in each.metadata
+    }

@@ -1,0 +1,1 @@
+"""How well tracks fit true ones: metrics of tracking several targets."""
