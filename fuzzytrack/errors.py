@@ -15,6 +15,7 @@ __all__ = [
     "PluginError",
     "PluginWarning",
     "RuleBaseError",
+    "ScannerError",
     "ScenarioError",
     "TrackWarning",
     "Word",
@@ -86,6 +87,10 @@ class RuleBaseError(FileError):
 
 class ScenarioError(FileError):
     """A scenario of a simulation that cannot be used."""
+
+
+class ScannerError(FileError):
+    """A configuration of a scan tracker that cannot be used."""
 
 
 class PluginError(FileError):

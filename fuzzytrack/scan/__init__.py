@@ -1,6 +1,6 @@
 """Track-while-scan: from the plots of a radar, without identities, to tracks."""
 
-from fuzzytrack.scan.part import Parameter, Part, parameter, parameters
+from fuzzytrack.scan.part import Parameter, Part, Word, declared, parameter, parameters, word
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
 
@@ -11,6 +11,9 @@ __all__ = [
     "Part",
     "Scan",
     "TrackReports",
+    "Word",
+    "declared",
     "parameter",
     "parameters",
+    "word",
 ]

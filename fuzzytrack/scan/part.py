@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from fuzzytrack.reprs import constructor_code
 
-__all__ = ["Parameter", "Part", "parameter", "parameters"]
+__all__ = ["Parameter", "Part", "Word", "declared", "parameter", "parameters", "word"]
 
 
 @dataclass(frozen=True)
@@ -56,14 +56,47 @@ class Parameter:
         return low and high
 
 
+@dataclass(frozen=True)
+class Word:
+    """What a word of a part means: which of several ways it takes, or the text of a tracker.
+
+    Attributes
+    ----------
+    meaning : str
+        In words, for the schema and the documentation.
+    choices : tuple of str
+        Words that are allowed; empty if it is a text.
+    """
+
+    meaning: str
+    choices: tuple[str, ...] = ()
+
+    @property
+    def allowed(self) -> str:
+        """Allowed values in words."""
+        return f"one of {', '.join(self.choices)}" if self.choices else "a text"
+
+    def allows(self, value: object) -> bool:
+        """Whether a value is allowed."""
+        return isinstance(value, str) and bool(value) and value in (self.choices or (value,))
+
+
 def parameter(default: float, meaning: str, unit: str = "", **limits: Any) -> Any:
     """Field of a part's dataclass; the arguments after `default` are those of `Parameter`."""
     return field(default=default, metadata={"parameter": Parameter(meaning, unit, **limits)})
 
 
+def word(default: str, meaning: str, *choices: str) -> Any:
+    """Field of a part's dataclass that is a word: one of the choices, or any text without them."""
+    return field(default=default, metadata={"word": Word(meaning, choices)})
+
+
 @dataclass(frozen=True, repr=False)
 class Part:
-    """A part of a scan tracker: a frozen dataclass whose numbers are declared by `parameter`.
+    """A part of a scan tracker: a frozen dataclass with numbers and words that are declared.
+
+    Each of its fields is made by `parameter` or `word`, so that files, their schema, the
+    documentation and a search know what it is.
 
     Raises
     ------
@@ -75,20 +108,27 @@ class Part:
     source: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
-        for name, declared in parameters(type(self)).items():
+        for name, meant in declared(type(self)).items():
             value = getattr(self, name)
-            if not declared.allows(value):
-                raise ValueError(f"{name} must be {declared.allowed}, got {value!r}")
-            object.__setattr__(self, name, int(value) if declared.whole else float(value))
+            if not meant.allows(value):
+                raise ValueError(f"{name} must be {meant.allowed}, got {value!r}")
+            if isinstance(meant, Parameter):
+                object.__setattr__(self, name, int(value) if meant.whole else float(value))
 
     def __repr__(self) -> str:
         return constructor_code(self)
 
 
+def declared(part: type[Part]) -> dict[str, Parameter | Word]:
+    """Declared numbers and words of a kind of part, by name, in the order of its fields."""
+    found = {}
+    for each in fields(part):
+        meant = each.metadata.get("parameter") or each.metadata.get("word")
+        if meant is not None:
+            found[each.name] = meant
+    return found
+
+
 def parameters(part: type[Part]) -> dict[str, Parameter]:
-    """Declared parameters of a kind of part, by name."""
-    return {
-        each.name: each.metadata["parameter"]
-        for each in fields(part)
-        if "parameter" in each.metadata
-    }
+    """Declared numbers of a kind of part, by name."""
+    return {k: meant for k, meant in declared(part).items() if isinstance(meant, Parameter)}

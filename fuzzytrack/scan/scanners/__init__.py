@@ -1,0 +1,1 @@
+"""Configurations of scan trackers: files that name the parts and their numbers."""
