@@ -14,6 +14,7 @@ import numpy as np
 
 import fuzzytrack as ft
 from fuzzytrack.plotting import *
+from fuzzytrack.scan import Scan, TrackReports
 from fuzzytrack.testbed import monte_carlo
 
 # A turning target, a plot every 4 s, three plots missed.
@@ -50,6 +51,37 @@ many = {
     f"alpha={alpha}": ft.AlphaBetaTracker(ft.FixedGains(alpha, alpha**2 / 2)).run(t, z)
     for alpha in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
 }
+
+# Tracks of a harbor, as a scan tracker reports them: three boats and two buoys, with clutter.
+def harbor(steps=50):
+    random = np.random.default_rng(5)
+    k = np.arange(steps)[:, None]
+    x = [[-300, 250, 60, -150, 220]] + k * [[9, -7, 5, 0, 0]]
+    y = [[-120, 200, -260, 180, -40]] + k * [[3, -4, 8, 0, 0]] + 0.06 * k**2 * [[1, 0, -1, 0, 0]]
+    paths = np.stack([x, y], axis=-1) + np.zeros((steps, 5, 2))
+    seen = paths + random.normal(0, 4, paths.shape)
+    clutter = random.uniform(-350, 350, (steps, 8, 2))
+    own = np.stack([-40 + 2 * k[:, 0], 0 * k[:, 0]], axis=1)
+    scans = [
+        Scan(2.0 * n, np.concatenate([seen[n], clutter[n]]), own=tuple(own[n]))
+        for n in range(steps)
+    ]
+    n, j = (each.ravel() for each in np.indices((steps, 5)))
+    status = np.where(n < 4, 0, np.where((j == 1) & (n > 20) & (n < 28), 2, 1)).astype(np.uint8)
+    kind = np.where(n < 4, 0, np.where(j < 3, 1, 2)).astype(np.uint8)
+    number = np.where((j == 0) & (n >= 30), 9, j + 1)
+    speed = np.gradient(paths, 2.0, axis=0).reshape(-1, 2)
+    held = paths.reshape(-1, 2) + random.normal(0, 2, (len(n), 2))
+    deviation = np.full((len(n), 4), 2.0)
+    rest = (np.full(len(n), 0.98), np.zeros(len(n)), np.where(status == 2, -1, j))
+    found = TrackReports(n, 2.0 * n, number, held, speed, deviation, status, kind, *rest)
+    boats = j < 3
+    names = np.array(["ferry", "tug", "yacht"])[j[boats]]
+    truth = 2.0 * n[boats], names, paths[:, :3].reshape(-1, 2)
+    return scans, truth, found
+
+
+scans, targets, reports = harbor()
 
 # Four trackers on 40 random draws of a turning target.
 trackers = {
@@ -146,6 +178,9 @@ PICTURES = {
         'plot_track(alone, axes_names=["range"])',
         "plot_errors(both, truth)",
         "plot_errors(both | many, truth)",
+    ],
+    "Scans": [
+        'plot_scan(reports, scans, targets, ["east", "north"])',
     ],
     "Experiments": [
         'plot_comparison(overall, sure, reference={"plots": found.measured_rmse})',

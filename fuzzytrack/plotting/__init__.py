@@ -22,6 +22,7 @@ from fuzzytrack.plotting.memberships import plot_memberships
 from fuzzytrack.plotting.noise import plot_noise_against_lag, plot_noise_ratio, plot_noise_surfaces
 from fuzzytrack.plotting.optimum import plot_motion_gains, plot_optimal_curves, plot_optimal_gains
 from fuzzytrack.plotting.rulebases import plot_rulebase, plot_rules
+from fuzzytrack.plotting.scans import plot_scan
 from fuzzytrack.plotting.stability import plot_stability_regions, plot_stability_volume
 from fuzzytrack.plotting.surfaces import plot_gain_surfaces, plot_relation, plot_surface
 from fuzzytrack.plotting.track_errors import plot_errors
@@ -49,6 +50,7 @@ __all__ = [
     "plot_relation",
     "plot_rulebase",
     "plot_rules",
+    "plot_scan",
     "plot_stability_regions",
     "plot_stability_volume",
     "plot_surface",

@@ -21,7 +21,13 @@ _APART = 30.0
 
 
 def draw_density(
-    ax: Axes, x: Array, y: Array, aspect: float | None, *, behind: bool = False
+    ax: Axes,
+    x: Array,
+    y: Array,
+    aspect: float | None,
+    *,
+    behind: bool = False,
+    what: str = "plots in a cell",
 ) -> None:
     """Draw the number of plots in each cell, with a colorbar.
 
@@ -34,6 +40,8 @@ def draw_density(
         compared.
     behind : bool
         Whether lines are drawn above: then in gray, as plots are.
+    what : str
+        What is counted, for the colorbar.
     """
     known = np.isfinite(x) & np.isfinite(y)
     x, y = x[known], y[known]
@@ -55,7 +63,7 @@ def draw_density(
         rasterized=True,
         zorder=1.5,
     )
-    bar = shared.figure_of(ax).colorbar(mesh, ax=ax, label="plots in a cell", shrink=0.9)
+    bar = shared.figure_of(ax).colorbar(mesh, ax=ax, label=what, shrink=0.9)
     if isinstance(scale, LogNorm):
         bar.locator = LogLocator(subs=(1.0, 2.0, 5.0))
         bar.formatter = shared.PLAIN

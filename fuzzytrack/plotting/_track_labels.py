@@ -27,7 +27,14 @@ _CELL = 3
 
 
 def label_ends(
-    ax: Axes, ids: Sequence[str], ends: Array, colors: Sequence[Any], lines: Array, marks: Array
+    ax: Axes,
+    ids: Sequence[str],
+    ends: Array,
+    colors: Sequence[Any],
+    lines: Array,
+    marks: Array,
+    *,
+    all_or_none: bool = True,
 ) -> bool:
     """Write the identities of tracks at their ends.
 
@@ -44,11 +51,14 @@ def label_ends(
         Points of all lines, which labels must not cover; a row of NaN between two lines.
     marks : ndarray, shape (n, 2)
         Where marks are, which they must not cover either.
+    all_or_none : bool
+        Whether nothing is written if there is no free place for one of them; else only that one is
+        left out.
 
     Returns
     -------
     bool
-        False, with nothing written, if there is no free place for one of them.
+        Whether all are written.
     """
     # Places depend on the limits of the axes, which are known when the figure is laid out.
     shared.figure_of(ax).draw_without_rendering()
@@ -58,12 +68,13 @@ def label_ends(
     written: list[Text] = []
     for id, end, color in zip(ids, ends, colors, strict=True):
         text = _free_text(ax, taken, id, end, color)
-        if text is None:
+        if text is not None:
+            written.append(text)
+        elif all_or_none:
             for each in written:
                 each.remove()
             return False
-        written.append(text)
-    return True
+    return len(written) == len(ids)
 
 
 def _free_text(ax: Axes, taken: _Taken, id: str, end: Array, color: Any) -> Text | None:

@@ -6,10 +6,12 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from fuzzytrack.plotting import _figures as shared
 
-__all__ = ["STYLES", "darker", "track_colors"]
+__all__ = ["STYLES", "darken_plots", "darker", "track_colors"]
 
 
 def _marks(marker: str, size: float, **more: Any) -> dict[str, Any]:
@@ -56,3 +58,12 @@ def track_colors(count: int) -> list[Any]:
 def darker(color: Any) -> tuple[float, ...]:
     """A color for letters on white, which need more contrast than lines."""
     return tuple(0.7 * part for part in mpl.colors.to_rgb(color))
+
+
+def darken_plots(ax: Axes) -> None:
+    """Plots in the legend as they are where there are few: faint ones could not be seen in it."""
+    legend = ax.get_legend()
+    assert legend is not None
+    for text, handle in zip(legend.get_texts(), legend.legend_handles, strict=True):
+        if text.get_text() == "plots" and isinstance(handle, Line2D):
+            handle.set(markersize=STYLES["plots"]["markersize"], markeredgewidth=1.0, alpha=1.0)

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import ScalarFormatter
 from numpy.typing import ArrayLike, NDArray
 
@@ -21,7 +20,7 @@ from fuzzytrack.plotting._plot_density import draw_density
 from fuzzytrack.plotting._position_axes import PositionAxes, spread, time_unit
 from fuzzytrack.plotting._shown_tracks import MARKED, Project, ShownTracks, shown_id
 from fuzzytrack.plotting._track_labels import label_ends
-from fuzzytrack.plotting._track_styles import STYLES, track_colors
+from fuzzytrack.plotting._track_styles import STYLES, darken_plots, track_colors
 from fuzzytrack.plotting.gains_over_time import draw_gains
 from fuzzytrack.trackers.result import TrackResult
 
@@ -366,7 +365,7 @@ class _Picture:
                     line.set_label("_named at its end")
         if last.get_legend_handles_labels()[0]:
             shared.legend_below(last)
-            _darken_plots(last)
+            darken_plots(last)
         if not shown.plots:
             first.set_title("no plots")
         elif len(shown) > _NAMED:
@@ -426,12 +425,3 @@ class _Coordinates:
     def cut(self, rows: slice) -> _Coordinates:
         """The same for some rows."""
         return _Coordinates(self.time[rows], self.x, self.y, self.period)
-
-
-def _darken_plots(ax: Axes) -> None:
-    """Plots in the legend as they are where there are few: faint ones could not be seen in it."""
-    legend = ax.get_legend()
-    assert legend is not None
-    for text, handle in zip(legend.get_texts(), legend.legend_handles, strict=True):
-        if text.get_text() == "plots" and isinstance(handle, Line2D):
-            handle.set(markersize=STYLES["plots"]["markersize"], markeredgewidth=1.0, alpha=1.0)
