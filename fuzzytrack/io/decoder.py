@@ -118,6 +118,36 @@ class PlotDecoder:
         measured = self._measured(table, lost)
         return self._piece(table, *self._placed(table, measured, lost))
 
+    def decode_with_covariance(
+        self, table: Table, lost: Counter[str]
+    ) -> tuple[Piece, Array | None]:
+        """Make plots of the rows of a table, with the covariance of the errors of each.
+
+        Parameters
+        ----------
+        table, lost
+            As for `decode`.
+
+        Returns
+        -------
+        piece : Piece
+            Without standard deviations.
+        covariance : ndarray, shape (n_rows, n_axes, n_axes), or None
+            NaN where the plot is missed; None if the noise is not known.
+
+        Raises
+        ------
+        DataError
+            As `decode`.
+        """
+        measured = self._measured(table, lost)
+        plots = self._converted(table, measured, lost)
+        covariance = plots.covariance
+        if covariance is None and not self.noise_is_polar:
+            sigma = self._noise(table, measured)
+            covariance = None if sigma is None else sigma[:, :, None] ** 2 * np.eye(sigma.shape[1])
+        return self._piece(table, plots.position, None), covariance
+
     def measured(self, table: Table) -> Piece:
         """Rows of a table as they are measured: range and angles of polar plots, else positions."""
         if self.columns.position != "polar":
@@ -158,28 +188,30 @@ class PlotDecoder:
         self, table: Table, measured: Array, lost: Counter[str]
     ) -> tuple[Array, Array | None]:
         """Positions in meters (or a bare angle), and standard deviations a plot if they differ."""
-        position = self.columns.position
+        plots = self._converted(table, measured, lost)
+        sigma = plots.sigma
+        return plots.position, self._sigma(table, measured) if sigma is None else sigma
+
+    def _converted(self, table: Table, measured: Array, lost: Counter[str]) -> ConvertedPlots:
+        """Positions in meters (or a bare angle), with the covariance of polar plots."""
+        from fuzzytrack.io.polar import ConvertedPlots
+
+        position, sound = self.columns.position, np.zeros(len(measured), dtype=bool)
         if position == "angle":
             turned = measured if self.columns.own_heading == "" else self._turned(table, measured)
-            return turned, self._sigma(table, measured)
+            return ConvertedPlots(turned, None, sound)
         if position == "geodetic":
             assert self.frame is not None
             place = self.frame.to_local(*measured.T)
             _count(lost, place.impossible, "an impossible latitude or longitude")
             _count(lost, place.too_far, "a place more than 5000 km away")
-            return place.position, self._sigma(table, measured)
+            return ConvertedPlots(place.position, None, place.impossible | place.too_far)
         if position == "polar":
             plots = self._polar(table, measured)
             _count(lost, plots.impossible, "an impossible range or angle")
-        elif not self.columns.own_ship and not self.columns.own_heading:
-            return measured, self._sigma(table, measured)
         else:
-            from fuzzytrack.io.polar import ConvertedPlots
-
-            plots = ConvertedPlots(measured, None, np.zeros(len(measured), dtype=bool))
-        plots = self._about_origin(table, plots, lost)
-        sigma = plots.sigma
-        return plots.position, self._sigma(table, measured) if sigma is None else sigma
+            plots = ConvertedPlots(measured, None, sound)
+        return self._about_origin(table, plots, lost)
 
     def _polar(self, table: Table, measured: Array) -> ConvertedPlots:
         from fuzzytrack.io.polar import polar_to_cartesian

@@ -25,7 +25,7 @@ from fuzzytrack.io.noise_estimate import NoiseEstimate, estimate_noise
 from fuzzytrack.io.piece import Piece, joined
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.source import Source
-from fuzzytrack.io.table import Table, no_rows
+from fuzzytrack.io.table import Kind, Table, no_rows
 from fuzzytrack.io.times import Clock
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
@@ -93,7 +93,9 @@ class PlotFiles:
         return summary(self, "columns", inputs=len(self.inputs))
 
     @classmethod
-    def of(cls, inputs: Sequence[Input], reading: Reading | None = None) -> PlotFiles:
+    def of(
+        cls, inputs: Sequence[Input], reading: Reading | None = None, *, identified: bool = True
+    ) -> PlotFiles:
         """Find out what files hold, from the names of their columns and from their first rows.
 
         Parameters
@@ -102,6 +104,8 @@ class PlotFiles:
             At least one, from `recording_files`.
         reading : Reading, optional
             How they are read.
+        identified : bool
+            Whether plots may have an identity; a column of it is ignored otherwise.
 
         Raises
         ------
@@ -119,10 +123,13 @@ class PlotFiles:
             names, types = tuple(source.types), dict(source.types)
             units, origin = getattr(source, "units", {}), getattr(source, "origin", "")
             columns = choose_columns(names, source.file, description, units)
+        unused = looks_like_identity(names, columns) or ("" if identified else columns.id)
+        if not identified:
+            columns = replace(columns, id="")
         _check_alike(inputs, reading, {name: types[name] for name in columns.kinds}, origin)
         table = _first_table(inputs, reading, columns)
         decoder = _decoder(columns, description, table, units)
-        notes = _notes(names, columns, decoder.clock, table)
+        notes = _notes(columns, decoder.clock, table, unused, identified=identified)
         return cls(tuple(inputs), reading, decoder, notes, table)
 
     @property
@@ -223,12 +230,50 @@ class PlotFiles:
         Holds one piece, and of a Parquet file about a megabyte a column, at a time, however large
         the row groups are.
         """
+        found = Findings() if findings is None else findings
+        farthest = 0.0
+        for table in self.tables(rows=rows, findings=found, progress=progress):
+            piece = self.piece_of(table, found)
+            if len(piece):
+                if self.columns.position == "geodetic":
+                    farthest = max(farthest, _farthest(piece))
+                yield piece
+        if self.columns.position == "geodetic" and self.decoder.frame is not None:
+            told = self.decoder.frame.remark(farthest, len(self.columns.axes))
+            found.note([told] if told else [])
+
+    def tables(
+        self,
+        more: Mapping[str, Kind] | None = None,
+        *,
+        rows: int | None = ROWS,
+        findings: Findings | None = None,
+        progress: Progress | None = None,
+    ) -> Iterator[Table]:
+        """Read the columns of the plots, and further ones, piece by piece.
+
+        Parameters
+        ----------
+        more : mapping of str to Kind, optional
+            Further columns, and what they must hold.
+        rows, findings, progress
+            As for `pieces`.
+
+        Yields
+        ------
+        Table
+
+        Raises
+        ------
+        DataError, ValueError, OSError
+            As `pieces`.
+        """
         if rows is not None and rows < 1:
             raise ValueError(f"rows must be at least 1, got {rows}")
         found = Findings() if findings is None else findings
         found.note(self.notes)
         sizes = [_size(each) for each in self.inputs]
-        total, before, farthest = max(1, sum(sizes)), 0, 0.0
+        total, before = max(1, sum(sizes)), 0
         for each, size in zip(self.inputs, sizes, strict=True):
 
             def watch(share: float, before: int = before, size: int = size) -> None:
@@ -236,17 +281,9 @@ class PlotFiles:
                     progress((before + share * size) / total)
 
             with opened(each, self.reading) as source:
-                for table in source.tables(self.columns.kinds, rows, watch):
-                    piece = self.piece_of(table, found)
-                    if len(piece):
-                        if self.columns.position == "geodetic":
-                            farthest = max(farthest, _farthest(piece))
-                        yield piece
+                yield from source.tables({**self.columns.kinds, **(more or {})}, rows, watch)
                 found.note(getattr(source, "notes", ()))
             before += size
-        if self.columns.position == "geodetic" and self.decoder.frame is not None:
-            told = self.decoder.frame.remark(farthest, len(self.columns.axes))
-            found.note([told] if told else [])
 
     def piece_of(self, table: Table, findings: Findings) -> Piece:
         """Plots of the rows of a table that have an identity.
@@ -419,15 +456,18 @@ def _checked(name: str, value: float | str | None) -> float | str | None:
     return float(value)
 
 
-def _notes(names: tuple[str, ...], columns: Columns, clock: Clock, table: Table) -> tuple[str, ...]:
+def _notes(
+    columns: Columns, clock: Clock, table: Table, unused: str, *, identified: bool
+) -> tuple[str, ...]:
     notes = [clock.note] if clock.note else []
     notes += filter(None, (_constant(table.numbers[name], name) for name in columns.read))
-    free = looks_like_identity(names, columns)
-    if free:
+    if unused and identified:
         notes.append(
-            f"column {free!r} looks like an identity and is not used; `id`={free} makes a track of "
-            "each"
+            f"column {unused!r} looks like an identity and is not used; `id`={unused} makes a "
+            "track of each"
         )
+    elif unused:
+        notes.append(f"column {unused!r}: identities of plots are not used")
     return tuple(notes)
 
 

@@ -1,0 +1,412 @@
+"""Recordings of plots without identities, read as the scans of a radar."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.cleaning_rules import Cleaning
+from fuzzytrack.io.column_names import plain_name
+from fuzzytrack.io.columns import known
+from fuzzytrack.io.decoder import PlotDecoder, is_latitude
+from fuzzytrack.io.files import PathLike
+from fuzzytrack.io.plot_files import ROWS, PlotFiles, opened
+from fuzzytrack.io.readers import reader_of
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.table import no_rows
+from fuzzytrack.recordings.preparation import inputs_of
+from fuzzytrack.recordings.scan_cut import ScanCut
+from fuzzytrack.recordings.scan_findings import ScanFindings
+from fuzzytrack.recordings.scan_gathering import GatheringRules, ScanGathering
+from fuzzytrack.recordings.scan_list import ScanList, own_columns
+from fuzzytrack.recordings.scan_order import CountedOn, RowOrder
+from fuzzytrack.recordings.scan_rhythm import recognize_scans
+from fuzzytrack.recordings.scan_rows import RowColumns, ScanRows, read_rows
+from fuzzytrack.reprs import summary
+from fuzzytrack.scan.scan import Scan
+from fuzzytrack.tasks import Progress
+
+__all__ = ["ScanPlots", "scans_of"]
+
+# Names of columns that say which scan a plot belongs to.
+_SCANS = ("scan", "scan_number", "scan_no", "scan_id", "sweep", "sweep_number", "frame")
+# Rows that show how the radar makes its scans.
+_FIRST = 5_000
+# Rules about single tracks, which plots without identities do not have.
+_OF_TRACKS = ("duplicates", "stale", "least_step", "max_gap", "max_coast")
+
+
+@dataclass(frozen=True)
+class ScanPlots:
+    """Plots of a recording, and how they are divided into scans.
+
+    Attributes
+    ----------
+    files : PlotFiles
+        Where they are from.
+    columns : RowColumns
+        Columns of scan, group and position of the radar.
+    cut : ScanCut
+        Where scans begin.
+    said : str
+        How scans are found, in a sentence.
+    list : ScanList or None
+        All scans with their times, those without a plot included.
+    lateness : float or None
+        How late a plot may come (s); None if none may.
+    findings : ScanFindings
+        Counts and notes; it grows while scans are read.
+    """
+
+    files: PlotFiles
+    columns: RowColumns
+    cut: ScanCut
+    said: str = ""
+    list: ScanList | None = None
+    lateness: float | None = None
+    findings: ScanFindings = field(default_factory=ScanFindings, compare=False)
+
+    def __repr__(self) -> str:
+        return summary(self, "cut", files=len(self.files.inputs))
+
+    @classmethod
+    def of(
+        cls,
+        plots: Any,
+        reading: Reading | None = None,
+        *,
+        scan: str | None = None,
+        period: float | None = None,
+        group: str | None = None,
+        own: tuple[str, ...] | None = None,
+        scans: PathLike | None = None,
+        lateness: float | None = None,
+    ) -> ScanPlots:
+        """Find out what a recording holds, and how its plots are divided into scans.
+
+        Parameters
+        ----------
+        plots : path, data frame, mapping or tuple
+            As for `fuzzytrack.track`.
+        reading : Reading, optional
+            How it is read. Identities are not used.
+        scan : str, optional
+            Column in which plots of one scan have the same word or number.
+        period : float, optional
+            Time of a turn of the antenna (s). Without both, scans are recognized: by a column with
+            a usual name, equal times, bearings that follow an antenna, or times between plots.
+        group : str, optional
+            Column that says which of several recordings a row belongs to; the rows of each follow
+            each other.
+        own : (str, str), optional
+            Columns of the position of a moving radar, in the frame of the plots; in the list of
+            scans if it has them, otherwise in the recording. Plots that are relative to the radar
+            have the option `own_ship` of the reading instead.
+        scans : str or path, optional
+            Table of all scans, see `ScanList.read`; needs a column of scans.
+        lateness : float, optional
+            Plots that come up to so many seconds late are put in order, later ones left out.
+
+        Raises
+        ------
+        DataError
+            If a column is missing, the scans cannot be recognized, or there are no plots.
+        ValueError
+            If options do not fit together, or a value is wrong; names it.
+        OSError
+            If a file cannot be read.
+        """
+        reading = _checked(reading or Reading(), period, lateness, scan)
+        inputs = inputs_of(plots)
+        files = PlotFiles.of(inputs, _without_identities(inputs[0], reading), identified=False)
+        _check_plots(files.decoder)
+        columns = _columns(files, scan, group, own, searched=period is None, listed=scans)
+        listed = None
+        if scans is not None:
+            if not columns.scan:
+                raise ValueError("scans: needs the column of the scans; name it with `scan`")
+            listed = ScanList.read(scans, files.decoder, columns, own)
+            columns = replace(columns, own=() if listed.has_own else columns.own)
+        made = cls(files, columns, ScanCut(), "", listed, lateness)
+        _check_own(made, own)
+        cut, said = made._cut(period)
+        made.findings.note(_notes(made))
+        return replace(made, cut=cut, said=said)
+
+    # ---------------------------------------------------------------- reading
+
+    def scans(
+        self, progress: Progress | None = None, *, rows: int | None = ROWS
+    ) -> Iterator[tuple[str, Scan]]:
+        """Read the scans, one after the other.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with the share of the recording that has been read.
+        rows : int or None
+            Rows that are held at a time; with the option `sort` of the reading all are.
+
+        Yields
+        ------
+        group : str
+            Which recording it is of; empty if there is one only.
+        scan : Scan
+
+        Raises
+        ------
+        DataError
+            If a cell does not hold what it must, times fall, or a scan comes twice; names row,
+            column and value.
+        OSError
+            If a file cannot be read.
+        """
+        gathering: ScanGathering | None = None
+        # Plots of one scan need not be in order where a column says which they are.
+        order = None
+        if self.cut.rule != "column" or self.lateness is not None:
+            order = RowOrder(self.lateness, self.files.decoder, self.findings)
+        group, done = "", set()
+        for part in self._parts(rows, progress):
+            word = str(part.groups[0])
+            if gathering is None or word != group:
+                if gathering is not None:
+                    yield from self._finished(group, order, gathering)
+                    done.add(group)
+                if word in done:
+                    raise DataError(
+                        f"{part.file}: row {part.rows[0]}, column {self.columns.group}: {word!r} "
+                        f"comes again after {group!r}; expected the rows of a group one after the "
+                        "other"
+                    )
+                group, gathering = word, self._gathering(word)
+            ready = part if order is None else order.advance(part)
+            yield from ((group, each) for each in gathering.advance(ready))
+        if gathering is None:
+            raise no_rows(self.files.names[0])
+        yield from self._finished(group, order, gathering)
+
+    def _finished(
+        self, group: str, order: RowOrder | None, gathering: ScanGathering
+    ) -> Iterator[tuple[str, Scan]]:
+        rest = None if order is None else order.finish()
+        if rest is not None:
+            yield from ((group, each) for each in gathering.advance(rest))
+        yield from ((group, each) for each in gathering.finish())
+
+    def _gathering(self, group: str) -> ScanGathering:
+        moved = self.list is not None and self.list.has_own and _is_relative(self.files.decoder)
+        rules = GatheringRules(
+            self.cut, self.files.decoder, self.columns.scan, moved, self.lateness is not None
+        )
+        return ScanGathering(rules, self.findings, self.list, group)
+
+    def _parts(self, rows: int | None, progress: Progress | None) -> Iterator[ScanRows]:
+        """Rows of one group each, their times counted on where the clock starts again."""
+        decoder, sort = self.files.decoder, self.files.reading.sort
+        wrap = decoder.description.wrap
+        period = decoder.clock.period if wrap == "auto" else wrap
+        clock = CountedOn(period, wrap == "auto", self.findings)
+        pieces = read_rows(
+            self.files, self.columns, self.findings, rows=None if sort else rows, progress=progress
+        )
+        group: str | None = None
+        for piece in _one(pieces) if sort else pieces:
+            for part in _by_group(piece, sort):
+                if group is not None and str(part.groups[0]) != group:
+                    clock.begin()
+                group = str(part.groups[0])
+                part = replace(part, time=clock.advance(part.time))
+                yield part.take(np.argsort(part.time, kind="stable")) if sort else part
+
+    # ---------------------------------------------------------------- recognition
+
+    def _cut(self, period: float | None) -> tuple[ScanCut, str]:
+        if period is not None:
+            return ScanCut("period", float(period)), f"a scan every {period:.4g} s"
+        if self.columns.scan:
+            return ScanCut("column"), f"scans by column {self.columns.scan}"
+        first = replace(self, findings=ScanFindings())
+        rows = next(first._parts(_FIRST, None), None)
+        if rows is None:
+            raise no_rows(self.files.names[0])
+        head = rows.take(slice(0, _FIRST))
+        found, said = recognize_scans(head.take(np.argsort(head.time, kind="stable")))
+        if found is None:
+            raise DataError(
+                f"{self.files.names[0]}: cannot tell which plots are of one scan: {said}; name the "
+                "column of the scans with `scan`, or give the time of a turn with `period`"
+            )
+        return found, said
+
+
+def scans_of(plots: Any, reading: Reading | None = None, **options: Any) -> Iterator[Scan]:
+    """Scans of a recording, one after the other; see `ScanPlots.of`.
+
+    Parameters
+    ----------
+    plots, reading
+        As for `ScanPlots.of`.
+    **options
+        The others of `ScanPlots.of`.
+
+    Yields
+    ------
+    Scan
+
+    Raises
+    ------
+    DataError, ValueError, OSError
+        As `ScanPlots.of` and `ScanPlots.scans`.
+    """
+    for _, scan in ScanPlots.of(plots, reading, **options).scans():
+        yield scan
+
+
+# -------------------------------------------------------------------- what is asked for
+
+
+def _checked(
+    reading: Reading, period: float | None, lateness: float | None, scan: str | None
+) -> Reading:
+    """Reading without options that plots without identities cannot have."""
+    if period is not None and not 0 < period < math.inf:
+        raise ValueError(f"period: must be a number of seconds > 0, got {period!r}")
+    if lateness is not None and not 0 <= lateness < math.inf:
+        raise ValueError(f"lateness: must be a number of seconds >= 0, got {lateness!r}")
+    if period is not None and scan is not None:
+        raise ValueError("scan and period: both say what a scan is; give one of them")
+    usual = Cleaning()
+    for name in _OF_TRACKS:
+        if getattr(reading.cleaning, name) != getattr(usual, name):
+            raise ValueError(f"{name}: is about plots of one track; plots of a scan have none yet")
+    if reading.description.sigma == "auto":
+        raise ValueError(
+            "sigma: cannot be estimated from plots without identities; give numbers or columns, or "
+            "leave it out: the configuration has the noise of its radar"
+        )
+    return reading
+
+
+def _without_identities(first: Any, reading: Reading) -> Reading:
+    """Reading in which records of ASTERIX need no identity."""
+    from fuzzytrack.io.asterix import Asterix
+
+    said = reading.format
+    if said is None and isinstance(first, str) and first != "-":
+        said = "asterix" if isinstance(reader_of(first), Asterix) else None
+    if said is not None and said.split(":")[0] == "asterix" and "identity=" not in said:
+        mark = "," if ":" in said else ":"
+        return replace(reading, format=f"{said}{mark}identity=none")
+    return reading
+
+
+def _check_plots(decoder: PlotDecoder) -> None:
+    columns = decoder.columns
+    if len(columns.axes) < 2:
+        raise DataError(
+            f"columns {', '.join(columns.read)}: plots of a scan have two coordinates; name them "
+            "with `axes`, `polar` or `geodetic`"
+        )
+    if decoder.noise_is_polar and any(decoder.noise[:2]) and None in decoder.noise:
+        raise ValueError(
+            "sigma_range and sigma_azimuth: give both (and that of elevation), or none"
+        )
+
+
+def _columns(
+    files: PlotFiles,
+    scan: str | None,
+    group: str | None,
+    own: tuple[str, ...] | None,
+    *,
+    searched: bool,
+    listed: PathLike | None,
+) -> RowColumns:
+    """Columns beside those of the plots; those that are named must be there."""
+    with opened(files.inputs[0], files.reading) as source:
+        names, file = tuple(source.types), source.file
+    found = "" if scan is None else known(names, scan, "scan", file)
+    if scan is None and searched:
+        used = files.columns.kinds
+        free = [name for name in names if plain_name(name)[0] in _SCANS and name not in used]
+        found = free[0] if len(free) == 1 else ""
+    place: tuple[str, ...] = ()
+    if own is not None:
+        if len(own) != 2:
+            raise ValueError(f"own: {len(own)} given; expected two columns")
+        if listed is None or any(name in names for name in own):
+            place = tuple(known(names, name, "own", file) for name in own)
+    elif not files.columns.own_ship:
+        place = own_columns(names, files.columns.axes)
+    columns = RowColumns(found, "" if group is None else known(names, group, "group", file), place)
+    for other in files.inputs[1:]:
+        with opened(other, files.reading) as source:
+            for name in columns.kinds:
+                if name not in source.types:
+                    raise DataError(f"{source.file}: no column {name!r}, which {file} has")
+    return columns
+
+
+def _check_own(plots: ScanPlots, said: tuple[str, ...] | None) -> None:
+    """Check that the position of the radar can be used."""
+    decoder, own, listed = plots.files.decoder, plots.columns.own, plots.list
+    if said is not None and decoder.columns.own_ship:
+        raise ValueError("own and own_ship: plots are in a fixed frame, or relative; give one")
+    if said is not None and not own and (listed is None or not listed.has_own):
+        raise DataError(f"{listed and listed.file}: `own`: no columns {', '.join(said)}")
+    if not own:
+        return
+    if _is_relative(decoder):
+        raise DataError(
+            f"`own`: plots in range and azimuth are relative to the radar; `own_ship`="
+            f"{','.join(own)} adds its position"
+        )
+    if is_latitude(own[0]) and decoder.frame is None:
+        raise DataError(
+            f"`own`: {own[0]!r} is a latitude by its name, but the plots have no place on earth"
+        )
+
+
+def _is_relative(decoder: PlotDecoder) -> bool:
+    """Whether plots are relative to a radar whose position is not known to the decoder."""
+    return decoder.columns.position == "polar" and not decoder.columns.own_ship
+
+
+def _notes(plots: ScanPlots) -> Iterator[str]:
+    columns = plots.files.columns
+    if len(columns.axes) > 2:
+        yield f"{columns.axes[2]}: tracks are in the plane of the other two coordinates"
+    if plots.columns.own:
+        yield f"position of the radar from columns {', '.join(plots.columns.own)}"
+    if plots.list is not None and plots.list.has_own:
+        yield f"position of the radar from {plots.list.file}"
+
+
+# -------------------------------------------------------------------- pieces
+
+
+def _one(pieces: Iterator[ScanRows]) -> Iterator[ScanRows]:
+    """All pieces as one, if there are any."""
+    parts = list(pieces)
+    if parts:
+        yield ScanRows.joined(parts)
+
+
+def _by_group(piece: ScanRows, sort: bool) -> Iterator[ScanRows]:
+    """Rows of one group each; those of the whole recording if they are sorted."""
+    if not len(piece):
+        return
+    if sort:
+        _, first, codes = np.unique(piece.groups, return_index=True, return_inverse=True)
+        for code in np.argsort(first).tolist():
+            yield piece.take(np.flatnonzero(codes == code))
+        return
+    cuts = np.flatnonzero(piece.groups[1:] != piece.groups[:-1]) + 1
+    for start, end in zip([0, *cuts.tolist()], [*cuts.tolist(), len(piece)], strict=True):
+        yield piece.take(slice(start, end))
