@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import ScalarFormatter
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.io.map_axes import map_axes
 from fuzzytrack.plotting import _figures as shared
 from fuzzytrack.plotting._position_axes import PositionAxes, spread
 
@@ -49,13 +50,13 @@ class GroundPlane:
         ValueError
             If there are not two names.
         """
-        axes = PositionAxes.of(2, names, None, None, spread(points))
-        upwards = axes.names[0].lower().startswith("north")
-        order = (1, 0) if upwards else (0, 1)
+        shown, order = map_axes(names)
+        axes = PositionAxes.of(2, shown, None, None, spread(points))
         known = points[np.isfinite(points).all(axis=1)]
         width, height = np.ptp(known, axis=0)[list(order)] if len(known) else (1.0, 1.0)
         shape = float(np.clip(height / width if width > 0 else 1.0, *_HEIGHTS))
-        return cls((axes.labels[order[0]], axes.labels[order[1]]), order, axes.scale, shape)
+        across, up = axes.labels
+        return cls((across, up), order, axes.scale, shape)
 
     def size(self, width: float) -> tuple[float, float]:
         """Size of a picture of some width, in inches."""
