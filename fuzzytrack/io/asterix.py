@@ -45,7 +45,7 @@ class Asterix(Reader):
     source: str | None = None
     identity: str = "auto"
 
-    suffixes: ClassVar[tuple[str, ...]] = (".ast", ".asterix")
+    suffixes: ClassVar[tuple[str, ...]] = (".ast", ".asterix", ".cat062")
 
     def __post_init__(self) -> None:
         if self.category is not None and self.category not in CATEGORIES:

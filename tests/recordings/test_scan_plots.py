@@ -232,9 +232,7 @@ def test_what_is_not_recognized_says_what_to_give():
     rng = np.random.default_rng(5)
     t = np.arange(50) + rng.uniform(0, 0.3, 50)
     data = plots_of(t=t, x=rng.normal(0, 100, 50), y=rng.normal(0, 100, 50))
-    with pytest.raises(
-        DataError, match=r"cannot tell which plots are of one scan.*`scan`"
-    ):
+    with pytest.raises(DataError, match=r"cannot tell which plots are of one scan.*`scan`"):
         ScanPlots.of(data)
 
 
@@ -267,9 +265,7 @@ def test_turns_without_a_plot_are_scans():
 
 def test_times_that_fall():
     data = plots_of(t=[0.0, 5.0, 4.0, 9.0], x=range(4), y=range(4))
-    with pytest.raises(
-        DataError, match=r"row 3, column t: 4 is earlier than 5.*`sort`"
-    ):
+    with pytest.raises(DataError, match=r"row 3, column t: 4 is earlier than 5.*`sort`"):
         read(data, period=2)
     _, found = read(data, {"sort": True}, period=2)
     assert [scan.rows.tolist() for _, scan in found if len(scan)] == [[1], [3, 2], [4]]

@@ -1,0 +1,154 @@
+"""A scan tracker run over the scans of a recording, as they are read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
+
+__all__ = ["ScanTotals", "ScannedScan", "Scanner", "Session", "run_scans"]
+
+
+class Session(Protocol):
+    """The state of a scan tracker; see `fuzzytrack.scan.scan_session`."""
+
+    def step(self, scan: Scan, *, tentative: bool = False) -> TrackReports:
+        """Take in the plots of the next scan."""
+
+
+class Scanner(Protocol):
+    """What starts a session; see `fuzzytrack.scan.scan_tracker`."""
+
+    @property
+    def name(self) -> str:
+        """Name of the configuration."""
+
+    def start(self) -> Any:
+        """Begin a session that has seen nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScannedScan:
+    """A scan, and the tracks after it.
+
+    Attributes
+    ----------
+    group : str
+        Which recording it is of; empty if there is one only.
+    scan : Scan
+    reports : TrackReports
+        Identities differ between recordings, too.
+    """
+
+    group: str
+    scan: Scan
+    reports: TrackReports
+
+
+@dataclass
+class ScanTotals:
+    """Counts of a run, of one recording or of all.
+
+    Attributes
+    ----------
+    scans, empty, plots : int
+        Scans, those without a plot, and plots.
+    used : int
+        Rows of reports with a plot.
+    rows : int
+        Rows of reports.
+    kinds : dict of int to int
+        Kind of each track that was confirmed, as it was reported last.
+    tentative : set of int
+        Tracks that were reported, but never as confirmed.
+    """
+
+    scans: int = 0
+    empty: int = 0
+    plots: int = 0
+    used: int = 0
+    rows: int = 0
+    kinds: dict[int, int] = field(default_factory=dict)
+    tentative: set[int] = field(default_factory=set)
+
+    def add(self, each: ScannedScan) -> None:
+        """Count one more scan."""
+        reports = each.reports
+        self.scans += 1
+        self.plots += len(each.scan)
+        self.empty += not len(each.scan)
+        self.rows += len(reports)
+        self.used += int((reports.plot >= 0).sum())
+        for id, status, kind in zip(
+            reports.track_id.tolist(), reports.status.tolist(), reports.kind.tolist(), strict=True
+        ):
+            if status != STATUSES.index("tentative"):
+                self.kinds[id] = kind
+                self.tentative.discard(id)
+            elif id not in self.kinds:
+                self.tentative.add(id)
+
+    def merge(self, other: ScanTotals) -> None:
+        """Add the counts of another recording."""
+        for name in ("scans", "empty", "plots", "used", "rows"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+        self.kinds |= other.kinds
+        self.tentative |= other.tentative
+
+    @property
+    def summary(self) -> dict[str, int]:
+        """The counts by name: tracks that were confirmed, and how many of each kind."""
+        kinds = list(self.kinds.values())
+        return {
+            "scans": self.scans,
+            "empty_scans": self.empty,
+            "plots": self.plots,
+            "rows": self.rows,
+            "rows_with_plot": self.used,
+            "tracks": len(kinds),
+            **{word: kinds.count(k) for k, word in enumerate(KINDS)},
+            "tentative": len(self.tentative),
+        }
+
+
+def run_scans(
+    scanner: Scanner, scans: Iterable[tuple[str, Scan]], *, tentative: bool = False
+) -> Iterator[ScannedScan]:
+    """Track the scans of recordings, each recording by itself.
+
+    Parameters
+    ----------
+    scanner : ScanTracker
+        The scan tracker.
+    scans : iterable of (str, Scan)
+        Those of each group one after the other.
+    tentative : bool
+        Whether tentative tracks are reported, too.
+
+    Yields
+    ------
+    ScannedScan
+        Identities of a later group follow those that were reported of the one before.
+    """
+    session: Any = None
+    group, before, last = "", 0, 0
+    for word, scan in scans:
+        if session is None or word != group:
+            session, group, before = scanner.start(), word, last
+        reports = session.step(scan, tentative=tentative)
+        reports = with_ids_after(reports, before)
+        if len(reports):
+            last = max(last, int(reports.track_id.max()))
+        yield ScannedScan(group, scan, reports)
+
+
+def with_ids_after(reports: TrackReports, before: int) -> TrackReports:
+    """Reports whose identities are larger by a number."""
+    if not before:
+        return reports
+    return replace(reports, track_id=np.asarray(reports.track_id + before))
