@@ -13,7 +13,7 @@ import numpy as np
 
 from fuzzytrack.kernels.rebuild import LONG_TUPLE, fingerprint, rebuilt, rounded, table
 
-__all__ = ["compiled", "entry_point"]
+__all__ = ["compiled", "dispatcher", "entry_point"]
 
 
 def compiled(function: Callable[..., Any], *, nogil: bool = False) -> Callable[..., Any]:
@@ -37,14 +37,19 @@ def compiled(function: Callable[..., Any], *, nogil: bool = False) -> Callable[.
         is kept on disk, unless the content of the function cannot be determined, see
         `fuzzytrack.kernels.rebuild.fingerprint`.
     """
-    import numba
-
     from fuzzytrack.kernels.llvm import keep_on_disk
 
     content = _Content.of(function, np.float64)
-    dispatcher: Any = numba.njit(_prepared_copy(content), error_model="numpy", nogil=nogil)
-    keep_on_disk(dispatcher, content.digest)
-    return dispatcher  # type: ignore[no-any-return]
+    made = dispatcher(_prepared_copy(content), nogil=nogil)
+    keep_on_disk(made, content.digest)
+    return made
+
+
+def dispatcher(function: Callable[..., Any], *, nogil: bool = False) -> Callable[..., Any]:
+    """Numba dispatcher of a function whose helpers are compiled already; kept on no disk."""
+    import numba
+
+    return numba.njit(function, error_model="numpy", nogil=nogil)  # type: ignore[no-any-return]
 
 
 def entry_point(function: Callable[..., Any], arguments: str, dtype: type = np.float64) -> Any:

@@ -15,10 +15,13 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.kernels.compile import entry_point
+from fuzzytrack.kernels.compile import compiled, dispatcher, entry_point
 from fuzzytrack.kernels.rebuild import LONG_TUPLE, fingerprint, rebuilt, table
 
 __all__ = ["SharedCode"]
+
+# In place of the types of arguments: those of arrays are found when the code is called.
+_ARRAYS = "arrays"
 
 #: Called with the number that comes next in a function, or those of a tuple; returns what takes
 #: their place.
@@ -64,6 +67,15 @@ class SharedCode:
         if arguments not in kind.codes:
             kind.codes[arguments] = kind.compiled(function, arguments)
         return kind.codes[arguments]
+
+    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Code for a function of arrays; see `fuzzytrack.kernels.compile.compiled`."""
+        kind = self._kind(function)
+        if kind is None:
+            return compiled(function)
+        if _ARRAYS not in kind.codes:
+            kind.codes[_ARRAYS] = kind.of_arrays(function)
+        return kind.codes[_ARRAYS]  # type: ignore[no-any-return]
 
     def _kind(self, function: Any) -> _Kind | None:
         """Functions of this kind, with the numbers of this one in memory; None if unknown."""
@@ -114,6 +126,12 @@ class _Kind:
             return entry_point(function, arguments)
         return _compiled(function, arguments, self.memory, self.differ)
 
+    def of_arrays(self, function: Any) -> Callable[..., Any]:
+        """The same for a function of arrays, which is called from Python."""
+        if not self.differ:
+            return compiled(function)
+        return dispatcher(_reading(function, self.memory, self.differ))
+
 
 def _bits(numbers: Array) -> Any:
     """Bit patterns: zeros of two signs are different numbers, and NaN is the same as itself."""
@@ -135,7 +153,14 @@ def _numbers(function: FunctionType) -> list[float]:
 def _compiled(
     function: FunctionType, arguments: str, memory: Array, differ: Collection[int]
 ) -> Any:
-    from fuzzytrack.kernels.llvm import c_function, inlined
+    from fuzzytrack.kernels.llvm import c_function
+
+    return c_function(_reading(function, memory, differ), arguments, np.float64, None)
+
+
+def _reading(function: FunctionType, memory: Array, differ: Collection[int]) -> FunctionType:
+    """Copy of a function that reads the numbers that differ from memory."""
+    from fuzzytrack.kernels.llvm import inlined
     from fuzzytrack.kernels.slots import Slot
 
     mark, place = uuid.uuid4().hex, 0
@@ -154,8 +179,8 @@ def _compiled(
         copy.__qualname__ = f"{copy.__name__}_{mark}_{place}"
         return inlined(copy)
 
-    made = _rebuilt(function, take, helper, {})
-    return c_function(made.py_func, arguments, np.float64, None)
+    copy: FunctionType = _rebuilt(function, take, helper, {}).py_func
+    return copy
 
 
 def _rebuilt(

@@ -1,16 +1,22 @@
-"""The search for the parameters with the least loss, by CMA-ES."""
+"""The search for the parameters with the least loss, by CMA-ES; several of them side by side."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
 
+from fuzzytrack.tasks import Progress, run_tasks
+from fuzzytrack.tuning.journal import Journal
 from fuzzytrack.tuning.parameters import Numbers, Space
 
-__all__ = ["Search"]
+__all__ = ["Search", "run_searches", "search_seed"]
+
+#: Number of a search, and numbers that it asks for.
+Task = tuple[int, tuple[Numbers, ...]]
 
 
 class Search:
@@ -86,3 +92,49 @@ class Search:
             count = len(self._asked)
             self.tell(losses[told : told + count])
             told += count
+
+
+def search_seed(seed: int, number: int) -> int:
+    """Seed of one of several searches."""
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+
+
+def run_searches(
+    searches: Sequence[Search],
+    losses: Callable[[Task], list[float]],
+    executor: Executor | None,
+    journal: Journal,
+    progress: Progress | None,
+) -> None:
+    """Do all searches, a generation of each at a time; continues what the journal holds.
+
+    Parameters
+    ----------
+    searches : sequence of Search
+    losses : callable
+        ``losses((k, numbers))``: those of the numbers that search k asks for.
+    executor : concurrent.futures.Executor or None
+        Runs them; in this process unless given.
+    journal : Journal
+        Where the losses are kept.
+    progress : callable or None
+        Called with the share of the trials that are done.
+    """
+    for search, told in zip(searches, journal.losses, strict=False):
+        search.replay(told)
+    while True:
+        tasks = [(k, tuple(s.ask())) for k, s in enumerate(searches) if not s.finished]
+        if not tasks:
+            return
+        try:
+            for (number, _), found in run_tasks(losses, tasks, executor):
+                searches[number].tell(found)
+                if progress is not None:
+                    progress(_share(searches))
+        finally:
+            journal.write([search.losses for search in searches])
+
+
+def _share(searches: Sequence[Search]) -> float:
+    done = sum(s.trials if s.finished else min(len(s.losses), s.trials) for s in searches)
+    return done / sum(search.trials for search in searches)

@@ -22,7 +22,7 @@ from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.preparation import suited
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
-from fuzzytrack.tasks import Progress, run_tasks
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import CRITERIA, Criterion, Likelihood
@@ -31,7 +31,7 @@ from fuzzytrack.tuning.folds import make_folds
 from fuzzytrack.tuning.journal import Journal
 from fuzzytrack.tuning.parameters import Numbers
 from fuzzytrack.tuning.rulebase_numbers import RuleBaseNumbers, rulebase_numbers
-from fuzzytrack.tuning.search import Search
+from fuzzytrack.tuning.search import Search, run_searches, search_seed
 from fuzzytrack.tuning.specifications import specification
 from fuzzytrack.tuning.trial import Trials
 from fuzzytrack.tuning.tuned import Row, Tuned, with_head
@@ -163,12 +163,11 @@ def tune(
     (candidates, unused), *rivals = (_with_effect(family, run) for family in families)
     families = [candidates, *(rival for rival, _ in rivals)]
     searches = [
-        Search(families[p.family].space, _seed(seed, k), _planned(families[p.family], trials))
+        Search(families[p.family].space, search_seed(seed, k), _planned(families[p.family], trials))
         for k, p in enumerate(plans)
     ]
-    for search, losses in zip(searches, journal.losses, strict=False):
-        search.replay(losses)
-    _search(searches, _Work(run, tuple(families), plans), executor, journal, progress)
+    work = _Work(run, tuple(families), plans)
+    run_searches(searches, work.losses, executor, journal, progress)
     best = {plan: search.best for plan, search in zip(plans, searches, strict=True)}
     rows = _rows(families, best, run)
     numbers = best[_Plan(0, _ALL)]
@@ -333,36 +332,6 @@ class _Work:
 
 def _planned(family: Candidates, trials: int | None) -> int:
     return trials or _TRIALS + _TRIALS_EACH * len(family.space.parameters)
-
-
-def _seed(seed: int, number: int) -> int:
-    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
-
-
-def _search(
-    searches: Sequence[Search],
-    work: _Work,
-    executor: Executor | None,
-    journal: Journal,
-    progress: Progress | None,
-) -> None:
-    """Do all searches, a generation of each at a time."""
-    while True:
-        tasks = [(k, tuple(s.ask())) for k, s in enumerate(searches) if not s.finished]
-        if not tasks:
-            return
-        try:
-            for (number, _), losses in run_tasks(work.losses, tasks, executor):
-                searches[number].tell(losses)
-                if progress is not None:
-                    progress(_share(searches))
-        finally:
-            journal.write([search.losses for search in searches])
-
-
-def _share(searches: Sequence[Search]) -> float:
-    done = sum(s.trials if s.finished else min(len(s.losses), s.trials) for s in searches)
-    return done / sum(search.trials for search in searches)
 
 
 def _job(

@@ -130,3 +130,46 @@ def test_other_trackers_share_nothing():
     learn_code(object(), 2, code)
     with sharing_code(object(), 2, code):
         pass
+
+
+def test_functions_of_arrays_share_code():
+    code = SharedCode()
+
+    def made(factor, offset, power):
+        def value(x):
+            return factor * x**power + offset
+
+        def fill(array):
+            for k in range(len(array)):
+                array[k] = value(array[k])
+
+        return fill
+
+    functions = [made(0.5, 1.0, 2.0), made(3.0, 1.0, 2.5), made(-1.0, 1.0, 2.0)]
+    for function in functions:
+        code.learn(function)
+    for function in functions:
+        plain, shared = np.linspace(0.1, 2.0, 7), np.linspace(0.1, 2.0, 7)
+        function(plain)
+        compiled = code.compiled(function)
+        compiled(shared)
+        np.testing.assert_array_equal(plain, shared)
+    # What `learn` has seen is compiled once; a single function as any other.
+    assert code.compilations == 1
+    assert code.compiled(functions[0]) is compiled
+    alone = SharedCode()
+    alone.compiled(functions[1])(shared)
+
+
+def test_a_function_of_arrays_that_is_unknown_is_compiled_for_itself():
+    def made(factor, table):
+        def fill(array):
+            array[0] = factor * table[0]
+
+        return fill
+
+    code = SharedCode()
+    array = np.zeros(1)
+    for factor in (2.0, 3.0):
+        code.compiled(made(factor, np.array([5.0])))(array)
+        assert array[0] == 5.0 * factor
