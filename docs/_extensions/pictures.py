@@ -83,6 +83,12 @@ def harbor(steps=50):
 
 scans, targets, reports = harbor()
 
+
+# Density of clutter (plots/m² and scan): high along a shore.
+def shore(x, y):
+    return 5e-7 + 2e-4 * np.exp(-(((y - 280 + 0.4 * x) / 60) ** 2))
+
+
 # Four trackers on 40 random draws of a turning target.
 trackers = {
     "maneuver": "maneuver",
@@ -181,6 +187,7 @@ PICTURES = {
     ],
     "Scans": [
         'plot_scan(reports, scans, targets, ["east", "north"])',
+        'plot_clutter_map(shore, scans, axes_names=["east", "north"])',
     ],
     "Experiments": [
         'plot_comparison(overall, sure, reference={"plots": found.measured_rmse})',

@@ -9,6 +9,7 @@ A figure that a function makes belongs to pyplot, as with other libraries, and i
 
 from fuzzytrack.plotting.certificates import plot_certificate
 from fuzzytrack.plotting.circle import plot_circle_cost, plot_circle_gains
+from fuzzytrack.plotting.clutter import plot_clutter_map
 from fuzzytrack.plotting.comparison import plot_comparison
 from fuzzytrack.plotting.experiments import (
     plot_consistency,
@@ -32,6 +33,7 @@ __all__ = [
     "plot_certificate",
     "plot_circle_cost",
     "plot_circle_gains",
+    "plot_clutter_map",
     "plot_comparison",
     "plot_consistency",
     "plot_error_distribution",
