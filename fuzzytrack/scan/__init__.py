@@ -2,6 +2,11 @@
 
 from fuzzytrack.scan.part import Parameter, Part, Word, declared, parameter, parameters, word
 from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scan_result import ScanResult
+from fuzzytrack.scan.scan_session import ScanSession
+from fuzzytrack.scan.scan_tracker import ScanTracker
+from fuzzytrack.scan.sensor import Sensor
+from fuzzytrack.scan.setting import Setting
 from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
 
 __all__ = [
@@ -10,6 +15,11 @@ __all__ = [
     "Parameter",
     "Part",
     "Scan",
+    "ScanResult",
+    "ScanSession",
+    "ScanTracker",
+    "Sensor",
+    "Setting",
     "TrackReports",
     "Word",
     "declared",

@@ -106,6 +106,14 @@ class Part:
 
     #: Where it comes from: a paper with its equation, or what was measured.
     source: ClassVar[str] = ""
+    #: Whether its kernels are plain Python that cannot be compiled; then all stages of a scan that
+    #: call them run in plain Python, too.
+    plain: ClassVar[bool] = False
+
+    @property
+    def memory(self) -> int:
+        """How many numbers of each track belong to this part alone."""
+        return 0
 
     def __post_init__(self) -> None:
         for name, meant in declared(type(self)).items():

@@ -1,0 +1,7 @@
+"""Candidates: which plots may be those of a track."""
+
+from fuzzytrack.scan.candidates.all_pairs import AllPairs
+from fuzzytrack.scan.candidates.base import Candidates, CandidatesKernels, candidates
+from fuzzytrack.scan.candidates.grid import GridCandidates
+
+__all__ = ["AllPairs", "Candidates", "CandidatesKernels", "GridCandidates", "candidates"]

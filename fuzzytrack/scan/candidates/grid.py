@@ -1,0 +1,168 @@
+"""Plots in cells of a grid, found by the cells that a gate touches."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from fuzzytrack.scan.candidates.base import Candidates, CandidatesKernels, candidates
+from fuzzytrack.scan.part import parameter
+from fuzzytrack.scan.plot_columns import PLOT_X, PLOT_Y
+from fuzzytrack.scan.setting import Setting
+
+__all__ = ["GridCandidates"]
+
+# Whole numbers before the table: columns and rows less 1, both powers of 2, and columns.
+_ACROSS, _UP, _COLUMNS, _CALLS, _HEAD = 0, 1, 2, 3, 4
+#: Smallest table; cells that a track looks into at most; plots it looks at, in a cell and in all.
+_LEAST, _MOST_CELLS, _MOST_IN_CELL, _MOST = 64, 4096, 64, 4096
+#: Plots that the cell of a plot holds on average, from which cells are halved; how often.
+_CROWDED, _HALVINGS = 16.0, 12
+
+
+def _table(plots: int) -> int:
+    """Number of cells for so many plots: a power of 2."""
+    size = _LEAST
+    while size < plots:
+        size *= 2
+    return size
+
+
+@candidates.register("grid")
+@dataclass(frozen=True, repr=False)
+class GridCandidates(Candidates):
+    """Plots are sorted into the cells of a table, about one a cell; a track looks into few cells.
+
+    The table repeats over the plane, so it has no border; each plot keeps the numbers of its cell,
+    so a cell that shares its place in the table with others gives none of theirs. Where plots
+    crowd, cells are halved, up to 12 times.
+
+    No scan takes more than time in proportion to tracks and plots: a track looks at no more than 64
+    plots of a cell and 4,096 in all, others at others. Both are far above what a radar gives; they
+    are reached by thousands of plots at one spot.
+    """
+
+    source: ClassVar[str] = "second study, section 6"
+
+    side: float = parameter(32.0, "least side of a cell before cells are halved", "m", least=0,
+                            above=True)  # fmt: skip
+
+    def integers(self, plots: int) -> int:
+        """Table, and the cell of each plot."""
+        return _HEAD + _table(plots) + 1 + 2 * plots
+
+    def numbers(self, plots: int) -> int:
+        """Side of a cell."""
+        return 1
+
+    def kernels(self, setting: Setting) -> CandidatesKernels:
+        """Kernels of this part."""
+        least_side = self.side
+
+        def first_side(plots: Any, count: int) -> float:
+            left, low = plots[0, PLOT_X], plots[0, PLOT_Y]
+            right, high = left, low
+            for j in range(count):
+                x, y = plots[j, PLOT_X], plots[j, PLOT_Y]
+                left, right = x if x < left else left, x if x > right else right
+                low, high = y if y < low else low, y if y > high else high
+            side = math.sqrt((right - left) * (high - low) / count)
+            return side if side > least_side else least_side
+
+        def place(x: float, y: float, side: float, integers: Any) -> int:
+            across, up = math.floor(x / side), math.floor(y / side)
+            row: int = (up & integers[_UP]) * integers[_COLUMNS]
+            column: int = across & integers[_ACROSS]
+            return row + column
+
+        def fill(plots: Any, count: int, side: float, integers: Any, size: int) -> float:
+            """Count the plots of each cell; how many the cell of a plot holds on average."""
+            for k in range(size + 1):
+                integers[_HEAD + k] = 0
+            crowd = 0.0
+            for j in range(count):
+                k = _HEAD + place(plots[j, PLOT_X], plots[j, PLOT_Y], side, integers)
+                crowd += 2.0 * integers[k] + 1.0
+                integers[k] += 1
+            return crowd / count
+
+        def arrange(
+            plots: Any, count: int, clock: Any, order: Any, integers: Any, numbers: Any
+        ) -> None:
+            integers[_CALLS] = 0
+            if count == 0:
+                return
+            size, columns = _LEAST, 8
+            while size < count:
+                size *= 2
+                if columns * columns < size:
+                    columns *= 2
+            integers[_ACROSS], integers[_UP], integers[_COLUMNS] = (
+                columns - 1, size // columns - 1, columns,
+            )  # fmt: skip
+            side = first_side(plots, count)
+            halvings = 0
+            while fill(plots, count, side, integers, size) > _CROWDED and halvings < _HALVINGS:
+                side *= 0.5
+                halvings += 1
+            numbers[0] = side
+            begin = 0
+            for k in range(size + 1):
+                here = integers[_HEAD + k]
+                integers[_HEAD + k] = begin
+                begin += here
+            cell = _HEAD + size + 1
+            for j in range(count):
+                x, y = plots[j, PLOT_X], plots[j, PLOT_Y]
+                k = _HEAD + place(x, y, side, integers)
+                row = integers[k]
+                integers[k] = row + 1
+                order[row] = j
+                integers[cell + 2 * row] = math.floor(x / side)
+                integers[cell + 2 * row + 1] = math.floor(y / side)
+            # Each entry is now where its cell ends, which is where the next one begins.
+            for k in range(size, 0, -1):
+                integers[_HEAD + k] = integers[_HEAD + k - 1]
+            integers[_HEAD] = 0
+
+        def some(count: int, integers: Any, found: Any) -> int:
+            """As many of all plots as a track may look at, others for each track."""
+            n = count if count < _MOST else _MOST
+            begin = (integers[_CALLS] * 61) % count
+            for k in range(n):
+                row = begin + k
+                found[k] = row if row < count else row - count
+            return n
+
+        def near(
+            x: float, y: float, reach: float, plots: Any, count: int, clock: Any, integers: Any,
+            numbers: Any, found: Any,
+        ) -> int:  # fmt: skip
+            if count == 0:
+                return 0
+            integers[_CALLS] += 1
+            side = numbers[0]
+            width = 2.0 * reach / side + 2.0
+            if not width * width < (count if count < _MOST_CELLS else _MOST_CELLS) + 32.0:
+                return some(count, integers, found)
+            left, right = math.floor((x - reach) / side), math.floor((x + reach) / side)
+            low, high = math.floor((y - reach) / side), math.floor((y + reach) / side)
+            columns = integers[_COLUMNS]
+            cell = _HEAD + (integers[_UP] + 1) * columns + 1
+            n = 0
+            for up in range(low, high + 1):
+                for across in range(left, right + 1):
+                    k = _HEAD + (up & integers[_UP]) * columns + (across & integers[_ACROSS])
+                    begin, end = integers[k], integers[k + 1]
+                    if end - begin > _MOST_IN_CELL:
+                        begin += (integers[_CALLS] * 61) % (end - begin - _MOST_IN_CELL + 1)
+                        end = begin + _MOST_IN_CELL
+                    for row in range(begin, end):
+                        here = integers[cell + 2 * row] == across
+                        if here and integers[cell + 2 * row + 1] == up and n < _MOST:
+                            found[n] = row
+                            n += 1
+            return n
+
+        return CandidatesKernels(arrange, near)

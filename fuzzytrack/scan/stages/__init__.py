@@ -1,0 +1,1 @@
+"""Stages of a scan: each a function of the arrays of a session, made of the kernels of parts."""

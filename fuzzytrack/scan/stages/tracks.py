@@ -1,0 +1,278 @@
+"""Stages that follow tracks, end them, start new ones, and report them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fuzzytrack.scan.clock import (
+    FREE,
+    HAS_DUE,
+    NEXT_ID,
+    PLOTS,
+    REPORTS,
+    ROWS,
+    SCAN_TIME,
+    TENTATIVE_TOO,
+)
+from fuzzytrack.scan.clutter.base import ClutterKernels
+from fuzzytrack.scan.confirmation.base import CONFIRM, END, ConfirmationKernels
+from fuzzytrack.scan.identity.base import IdentityKernels
+from fuzzytrack.scan.initiation.base import InitiationKernels
+from fuzzytrack.scan.kind.base import KindKernels
+from fuzzytrack.scan.plot_columns import (
+    INNOVATION_X,
+    INNOVATION_Y,
+    LOG_DENSITY,
+    LOG_LIKELIHOOD,
+    PLOT_ROW,
+    PLOT_TIME,
+    PLOT_X,
+    PLOT_Y,
+    R11,
+    R12,
+    R22,
+    STARTS,
+    STRENGTH,
+)
+from fuzzytrack.scan.quality.base import QualityKernels
+from fuzzytrack.scan.report.base import ReportKernels
+from fuzzytrack.scan.report_columns import (
+    REPORT_DEVIATION,
+    REPORT_EXISTENCE,
+    REPORT_ID,
+    REPORT_KIND,
+    REPORT_PLOT,
+    REPORT_POSITION,
+    REPORT_SINCE,
+    REPORT_STATUS,
+    REPORT_TIME,
+    REPORT_VELOCITY,
+)
+from fuzzytrack.scan.stages.pairs import log_likelihood
+from fuzzytrack.scan.stages.plots import DONE
+from fuzzytrack.scan.track_columns import (
+    HITS,
+    ID,
+    KIND,
+    LOOKED,
+    MISSES,
+    PLOT,
+    STATUS,
+    TIME,
+)
+from fuzzytrack.scan.update.base import UpdateKernels
+
+__all__ = ["follow_stage", "report_stage", "start_stage"]
+
+TENTATIVE, CONFIRMED = 1.0, 2.0
+
+
+def follow_stage(
+    update: UpdateKernels, quality: QualityKernels, kind: KindKernels,
+    initiation: InitiationKernels, confirmation: ConfirmationKernels, identity: IdentityKernels,
+    clutter: ClutterKernels, detection: float,
+) -> Callable[..., int]:  # fmt: skip
+    """Stage that updates tracks by their plots, confirms and ends them."""
+    predict, update_hit, second = update.predict, update.hit, initiation.second
+    quality_hit, quality_miss = quality.hit, quality.miss
+    kind_hit, kind_miss = kind.hit, kind.miss
+    confirmation_hit, decide = confirmation.hit, confirmation.decide
+    identity_end, identity_confirm = identity.end, identity.confirm
+    clutter_hit, clutter_miss, clutter_end = clutter.hit, clutter.miss, clutter.end
+    log_detection = math.log(detection)
+
+    def judge_plot(tracks: Any, i: int, plots: Any, j: int) -> float:
+        """Innovation and likelihood of the plot of a track; the time since its last one."""
+        dt = plots[j, PLOT_TIME] - tracks[i, TIME]
+        x, y, _, _, p11, p12, p22 = predict(tracks, i, dt)
+        dx, dy = plots[j, PLOT_X] - x, plots[j, PLOT_Y] - y
+        likelihood = log_likelihood(
+            dx, dy, p11 + plots[j, R11], p12 + plots[j, R12], p22 + plots[j, R22]
+        )
+        plots[j, INNOVATION_X], plots[j, INNOVATION_Y] = dx, dy
+        plots[j, LOG_LIKELIHOOD] = likelihood
+        plots[j, STRENGTH] = log_detection + likelihood - plots[j, LOG_DENSITY]
+        return dt  # type: ignore[no-any-return]
+
+    def hit(tracks: Any, i: int, plots: Any, j: int, clock: Any) -> None:
+        dt = judge_plot(tracks, i, plots, j)
+        tracks[i, HITS] += 1.0
+        tracks[i, MISSES] = 0.0
+        quality_hit(tracks, i, plots, j, clock)
+        kind_hit(tracks, i, plots, j, clock)
+        if tracks[i, HITS] != 2.0 or not second(tracks, i, plots, j, dt):
+            update_hit(tracks, i, plots, j, clock)
+        confirmation_hit(tracks, i, plots, j, clock)
+        tracks[i, TIME] = tracks[i, LOOKED] = plots[j, PLOT_TIME]
+        tracks[i, PLOT] = plots[j, PLOT_ROW]
+
+    def miss(tracks: Any, i: int, clock: Any) -> None:
+        tracks[i, MISSES] += 1.0
+        quality_miss(tracks, i, clock)
+        kind_miss(tracks, i, clock)
+        tracks[i, LOOKED] = clock[SCAN_TIME]
+        tracks[i, PLOT] = -1.0
+
+    def follow_stage(work: Any) -> int:
+        tracks, plots, clock, counts = work.tracks, work.plots, work.clock, work.counts
+        cells, kept, plot_of, due = work.cells, work.kept, work.plot_of, work.due
+        rows, some_due = counts[ROWS], counts[HAS_DUE] > 0
+        for i in range(rows):
+            status = tracks[i, STATUS]
+            if status == 0.0:
+                continue
+            if some_due and due[i] == 0:
+                tracks[i, PLOT] = -1.0
+                continue
+            j = plot_of[i]
+            if j >= 0:
+                hit(tracks, i, plots, j, clock)
+            else:
+                miss(tracks, i, clock)
+            answer = decide(tracks, i, clock)
+            if answer == CONFIRM:
+                tracks[i, STATUS] = CONFIRMED
+                tracks[i, ID] = identity_confirm(tracks, i, clock, kept)
+            if j >= 0:
+                clutter_hit(tracks, i, plots, j, status, clock, cells)
+            else:
+                clutter_miss(tracks, i, clock, cells)
+            if answer == END:
+                clutter_end(tracks, i, clock, cells)
+                if status == CONFIRMED:
+                    identity_end(tracks, i, clock, kept)
+                tracks[i, STATUS] = 0.0
+        return DONE
+
+    return follow_stage
+
+
+def start_stage(
+    update: UpdateKernels, quality: QualityKernels, kind: KindKernels,
+    initiation: InitiationKernels, confirmation: ConfirmationKernels, identity: IdentityKernels,
+    clutter: ClutterKernels,
+) -> Callable[..., int]:  # fmt: skip
+    """Stage that starts tracks at the plots that are left."""
+    initiation_start, update_start = initiation.start, update.start
+    quality_start, kind_start = quality.start, kind.start
+    confirmation_start, decide = confirmation.start, confirmation.decide
+    identity_confirm = identity.confirm
+    clutter_start, clutter_leave, clutter_drop = clutter.start, clutter.leave, clutter.drop
+
+    def begin(tracks: Any, i: int, plots: Any, j: int, clock: Any) -> int:
+        tracks[i, STATUS], tracks[i, HITS], tracks[i, MISSES] = TENTATIVE, 1.0, 0.0
+        tracks[i, TIME] = tracks[i, LOOKED] = plots[j, PLOT_TIME]
+        tracks[i, PLOT] = plots[j, PLOT_ROW]
+        initiation_start(tracks, i, plots, j, clock)
+        quality_start(tracks, i, plots, j, clock)
+        kind_start(tracks, i, plots, j, clock)
+        update_start(tracks, i, plots, j, clock)
+        confirmation_start(tracks, i, plots, j, clock)
+        return decide(tracks, i, clock)
+
+    def collect_rows(tracks: Any, free: Any, counts: Any) -> None:
+        """Find the rows without a track, the first ones last, and forget those at the end."""
+        rows, n = counts[ROWS], 0
+        while rows > 0 and tracks[rows - 1, STATUS] == 0.0:
+            rows -= 1
+        for i in range(rows - 1, -1, -1):
+            if tracks[i, STATUS] == 0.0:
+                free[n] = i
+                n += 1
+        counts[ROWS], counts[FREE] = rows, n
+
+    def start_stage(work: Any) -> int:
+        tracks, plots, clock, counts = work.tracks, work.plots, work.clock, work.counts
+        cells, free, due = work.cells, work.free, work.due
+        track_of, some_due = work.track_of, counts[HAS_DUE] > 0
+        collect_rows(tracks, free, counts)
+        for j in range(counts[PLOTS]):
+            if track_of[j] >= 0:
+                continue
+            if plots[j, STARTS] == 0.0:
+                clutter_leave(plots, j, clock, cells)
+                continue
+            n = counts[FREE]
+            i = free[n - 1] if n > 0 else counts[ROWS]
+            answer = begin(tracks, i, plots, j, clock)
+            if answer == END:
+                tracks[i, STATUS] = 0.0
+                clutter_drop(plots, j, clock, cells)
+                continue
+            if n > 0:
+                counts[FREE] = n - 1
+            else:
+                counts[ROWS] = i + 1
+            track_of[j] = i
+            if answer == CONFIRM:
+                tracks[i, STATUS] = CONFIRMED
+            clutter_start(tracks, i, plots, j, clock, cells)
+            # Its identity follows when all new tracks are known.
+            tracks[i, ID] = 0.0
+            if some_due:
+                due[i] = 1
+        number_new(work)
+        return DONE
+
+    def number_new(work: Any) -> None:
+        """Give new tracks their identities in the order of the plots that were given."""
+        tracks, counts, track_of = work.tracks, work.counts, work.track_of
+        found, order = work.found, work.order
+        for j in range(counts[PLOTS]):
+            found[order[j]] = j
+        for k in range(counts[PLOTS]):
+            i = track_of[found[k]]
+            if i >= 0 and tracks[i, ID] == 0.0:
+                tracks[i, ID] = counts[NEXT_ID]
+                counts[NEXT_ID] += 1
+                if tracks[i, STATUS] == CONFIRMED:
+                    tracks[i, ID] = identity_confirm(tracks, i, work.clock, work.kept)
+
+    return start_stage
+
+
+def report_stage(
+    update: UpdateKernels, quality: QualityKernels, report: ReportKernels
+) -> Callable[..., int]:
+    """Stage that writes what is reported."""
+    predict, velocity_variance = update.predict, update.velocity_variance
+    existence, shown = quality.existence, report.shown
+
+    def write(tracks: Any, i: int, row: Any, n: int, now: float) -> None:
+        coasts = tracks[i, MISSES] > 0.0
+        time = now if coasts else tracks[i, TIME]
+        dt = time - tracks[i, TIME]
+        x, y, vx, vy, p11, _, p22 = predict(tracks, i, dt)
+        v11, v22 = velocity_variance(tracks, i, dt)
+        row[n, REPORT_TIME], row[n, REPORT_SINCE] = time, dt
+        row[n, REPORT_POSITION], row[n, REPORT_POSITION + 1] = x, y
+        row[n, REPORT_VELOCITY], row[n, REPORT_VELOCITY + 1] = vx, vy
+        row[n, REPORT_DEVIATION] = math.sqrt(p11)
+        row[n, REPORT_DEVIATION + 1] = math.sqrt(p22)
+        row[n, REPORT_DEVIATION + 2] = math.sqrt(v11)
+        row[n, REPORT_DEVIATION + 3] = math.sqrt(v22)
+        row[n, REPORT_EXISTENCE] = existence(tracks, i)
+        row[n, REPORT_ID], row[n, REPORT_KIND] = tracks[i, ID], tracks[i, KIND]
+        row[n, REPORT_PLOT] = tracks[i, PLOT]
+        status = 0.0
+        if tracks[i, STATUS] == CONFIRMED:
+            status = 2.0 if coasts else 1.0
+        row[n, REPORT_STATUS] = status
+
+    def report_stage(work: Any) -> int:
+        tracks, clock, counts, due = work.tracks, work.clock, work.counts, work.due
+        some_due, tentative_too = counts[HAS_DUE] > 0, counts[TENTATIVE_TOO] > 0
+        n = 0
+        for i in range(counts[ROWS]):
+            status = tracks[i, STATUS]
+            if status == 0.0 or (some_due and due[i] == 0):
+                continue
+            if tentative_too or (status == CONFIRMED and shown(tracks, i, clock)):
+                write(tracks, i, work.report, n, clock[SCAN_TIME])
+                n += 1
+        counts[REPORTS] = n
+        return DONE
+
+    return report_stage
