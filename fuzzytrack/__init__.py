@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from fuzzytrack.recordings.tracking import TrackedRecording, track
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
     from fuzzytrack.schedulers.reachable_gains import certify
+    from fuzzytrack.scoring.score_tracks import score
+    from fuzzytrack.scoring.scores import Scores
     from fuzzytrack.trackers import AlphaBetaTracker, Gains, Tracker, TrackResult, TrackState
     from fuzzytrack.tuning.tuner import tune
 
@@ -50,6 +52,7 @@ __all__ = [
     "PluginWarning",
     "RuleBase",
     "RuleBaseError",
+    "Scores",
     "TrackResult",
     "TrackState",
     "TrackWarning",
@@ -65,6 +68,7 @@ __all__ = [
     "plot_memberships",
     "plot_surface",
     "plot_track",
+    "score",
     "shipped_rulebases",
     "track",
     "tune",
@@ -95,6 +99,8 @@ _HOMES = {
     "recordings.tracking": ("TrackedRecording", "track"),
     "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),
     "schedulers.reachable_gains": ("certify",),
+    "scoring.score_tracks": ("score",),
+    "scoring.scores": ("Scores",),
     "trackers": ("AlphaBetaTracker", "Gains", "TrackResult", "TrackState", "Tracker"),
     "tuning.tuner": ("tune",),
 }

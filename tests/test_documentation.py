@@ -97,7 +97,8 @@ def test_rule_bases_on_the_page_load(page):
 
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
 @pytest.mark.parametrize(
-    ("page", "number"), [("docs/real-data.md", 10), ("docs/which-tracker.md", 5)]
+    ("page", "number"),
+    [("docs/real-data.md", 10), ("docs/which-tracker.md", 5), ("docs/score.md", 2)],
 )
 def test_commands_on_pages_about_files_run(page, number, tmp_path, monkeypatch):
     """Their files are those on the page; of the output, each line that is shown is there."""

@@ -188,6 +188,7 @@ PICTURES = {
     "Scans": [
         'plot_scan(reports, scans, targets, ["east", "north"])',
         'plot_clutter_map(shore, scans, axes_names=["east", "north"])',
+        'plot_scores(ft.score(reports, targets, truth_lists="moving"))',
     ],
     "Experiments": [
         'plot_comparison(overall, sure, reference={"plots": found.measured_rmse})',

@@ -26,6 +26,10 @@ COMMANDS = {
         "Track the plots of a file, or of several files in their order.",
     ),
     "compare": ("compare:compare", "Compare trackers on recorded plots, with or without truth."),
+    "score": (
+        "score:score",
+        "Score tracks against true positions: OSPA, GOSPA, SIAP, CLEAR MOT, IDF1, HOTA and more.",
+    ),
     "testbed": (
         "testbed:experiment",
         "Run trackers on many random draws of a scenario.",

@@ -24,6 +24,7 @@ from fuzzytrack.plotting.noise import plot_noise_against_lag, plot_noise_ratio, 
 from fuzzytrack.plotting.optimum import plot_motion_gains, plot_optimal_curves, plot_optimal_gains
 from fuzzytrack.plotting.rulebases import plot_rulebase, plot_rules
 from fuzzytrack.plotting.scans import plot_scan
+from fuzzytrack.plotting.scores import plot_scores
 from fuzzytrack.plotting.stability import plot_stability_regions, plot_stability_volume
 from fuzzytrack.plotting.surfaces import plot_gain_surfaces, plot_relation, plot_surface
 from fuzzytrack.plotting.track_errors import plot_errors
@@ -53,6 +54,7 @@ __all__ = [
     "plot_rulebase",
     "plot_rules",
     "plot_scan",
+    "plot_scores",
     "plot_stability_regions",
     "plot_stability_volume",
     "plot_surface",

@@ -1,0 +1,146 @@
+"""OSPA(2): the distance between sets of whole tracks over a window of time, at each instant."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.scoring.assignment import best_assignment
+from fuzzytrack.scoring.close_pairs import ClosePairs
+from fuzzytrack.scoring.ospa import Ospa
+from fuzzytrack.scoring.scene import ObjectRows, Scene
+
+__all__ = ["ospa2"]
+
+Integers = NDArray[np.int64]
+
+
+def ospa2(scene: Scene, pairs: ClosePairs, cutoff: float, order: float, window: int) -> Ospa:
+    """OSPA of tracks: a switch of identity costs as long as it is in the window.
+
+    The points of OSPA are the tracks of the last instants. Two tracks f and g are as far from each
+    other as they are on average over the instants T at which either exists:
+
+    d(f, g)ᵖ = (1/|T|) Σ over T of min(|f(t) - g(t)|, c)ᵖ, or cᵖ where only one of them exists.
+
+    Parameters
+    ----------
+    scene : Scene
+    pairs : ClosePairs
+        Must reach as far as the cut-off.
+    cutoff, order : float
+        Cut-off c (m), and order p of both means.
+    window : int
+        Number of instants in a window, which ends at the instant for which the value holds; the
+        first ones are shorter.
+
+    Returns
+    -------
+    Ospa
+
+    References
+    ----------
+    M. Beard, B. T. Vo, B.-N. Vo: A solution for large-scale multi-object tracking. IEEE
+    Transactions on Signal Processing 68 (2020), section II, with equal weights and q = p.
+    """
+    count, whole = len(scene.time), cutoff**order
+    true_key, true_rows = _in_windows(scene.truth, count, window)
+    track_key, track_rows = _in_windows(scene.tracks, count, window)
+    gain = whole - pairs.distance**order
+    near = gain > 0
+    end, place = _windows(pairs.instant[near], count, window)
+    true_id = scene.truth.id[pairs.true_row[near]][place]
+    track_id = scene.tracks.id[pairs.track_row[near]][place]
+    left = np.searchsorted(true_key, end * len(scene.truth.names) + true_id)
+    right = np.searchsorted(track_key, end * len(scene.tracks.names) + track_id)
+    # Pairs of tracks that are ever near each other in a window, with the sums over it.
+    both, first, which = np.unique(
+        left * max(1, len(track_key)) + right, return_index=True, return_inverse=True
+    )
+    left, right = left[first], right[first]
+    gains = np.bincount(which, gain[near][place], minlength=len(both))
+    # Both exist also at instants at which they are far from each other.
+    together = _together(scene, true_key, track_key, left, right, window)
+    union = true_rows[left] + track_rows[right] - together
+    mean = gains / union
+    chosen = best_assignment(left, right, mean)
+    return _distance(
+        count,
+        np.bincount(true_key // max(1, len(scene.truth.names)), minlength=count),
+        np.bincount(track_key // max(1, len(scene.tracks.names)), minlength=count),
+        np.bincount(end[first][chosen], mean[chosen], minlength=count).astype(np.float64),
+        whole,
+        order,
+    )
+
+
+def _windows(instant: Integers, count: int, window: int) -> tuple[Integers, Integers]:
+    """Windows, by their last instants, that rows are in, and for each of them which row."""
+    place = np.repeat(np.arange(len(instant)), window)
+    end = (instant[:, None] + np.arange(window)).ravel()
+    inside = end < count
+    return end[inside], place[inside]
+
+
+def _in_windows(rows: ObjectRows, count: int, window: int) -> tuple[Integers, Integers]:
+    """Objects of each window, as window × number of objects + object, and how often each is."""
+    end, place = _windows(rows.instant, count, window)
+    return np.unique(end * len(rows.names) + rows.id[place], return_counts=True)
+
+
+def _together(
+    scene: Scene,
+    true_key: Integers,
+    track_key: Integers,
+    left: Integers,
+    right: Integers,
+    window: int,
+) -> Integers:
+    """In how many instants of a window both members of a pair exist."""
+    objects, tracks = len(scene.truth.names), len(scene.tracks.names)
+    end = true_key[left] // max(1, objects)
+    pair = (true_key[left] % max(1, objects)) * max(1, tracks) + track_key[right] % max(1, tracks)
+    # Instants at which both exist, of the pairs that matter.
+    wanted, which = np.unique(pair, return_inverse=True)
+    true_at = _Instants(scene.truth)
+    track_at = _Instants(scene.tracks)
+    total = np.zeros(len(pair), dtype=np.int64)
+    order = np.argsort(which, kind="stable")
+    bounds = np.searchsorted(which[order], np.arange(len(wanted) + 1))
+    for number, code in enumerate(wanted.tolist()):
+        one = true_at.of(code // max(1, tracks))
+        common = np.intersect1d(one, track_at.of(code % max(1, tracks)), assume_unique=True)
+        mine = order[bounds[number] : bounds[number + 1]]
+        last = np.searchsorted(common, end[mine], side="right")
+        total[mine] = last - np.searchsorted(common, end[mine] - window, side="right")
+    return total
+
+
+class _Instants:
+    """Instants of each object."""
+
+    def __init__(self, rows: ObjectRows) -> None:
+        order = np.argsort(rows.id, kind="stable")
+        self.instant = rows.instant[order]
+        self.bounds = np.searchsorted(rows.id[order], np.arange(len(rows.names) + 1))
+
+    def of(self, id: int) -> Integers:
+        return self.instant[self.bounds[id] : self.bounds[id + 1]]
+
+
+def _distance(
+    count: int,
+    n_true: Integers,
+    n_tracks: Integers,
+    saved: Array,
+    whole: float,
+    order: float,
+) -> Ospa:
+    """OSPA of sets in which the best assignment saves a part of the greatest cost."""
+    most, least = np.maximum(n_true, n_tracks), np.minimum(n_true, n_tracks)
+    size, root = np.maximum(most, 1), 1 / order
+    # Rounding may make a sum that is nothing negative.
+    near = np.maximum(whole * least - saved, 0.0) / size
+    many = whole * (most - least) / size
+    return Ospa((near + many) ** root, near**root, many**root)
