@@ -25,7 +25,8 @@ __all__ = [
 #: For types of parameters other than words and numbers, the functions that make them from a word.
 Readers = Mapping[Any, Callable[[str], Any]]
 
-_OPTION = re.compile(r":([^\W\d]\w*)=([^:]*)$")
+# A name may be a path with points, as those of settings within settings are.
+_OPTION = re.compile(r":([^\W\d][\w.-]*)=([^:]*)$")
 # A comma before a parameter, where a colon should be, and a parameter where the name should be.
 _COMMA = re.compile(r"\s*,\s*(?=[^\W\d]\w*\s*=)")
 _BARE = re.compile(r"\s*[^\W\d]\w*\s*=")

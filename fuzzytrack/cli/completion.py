@@ -227,6 +227,12 @@ def _scenarios() -> Sequence[str]:
     return shipped_scenarios()
 
 
+def _scenarios_and_scenes() -> Sequence[str]:
+    from fuzzytrack.simulation.scene.files import shipped_scenes
+
+    return sorted([*_scenarios(), *shipped_scenes()])
+
+
 def _papers() -> Sequence[str]:
     from fuzzytrack.papers.catalog import PAPERS
 
@@ -261,6 +267,7 @@ VALUES: dict[str, Callable[[], Sequence[str]]] = {
     "RULEBASE": _rulebases,
     "FROM": _rulebases,
     "SCENARIO": _scenarios,
+    "SCENARIO|SCENE": _scenarios_and_scenes,
     "DATA|SCENARIO...": _scenarios,
     "PAPER": _papers,
     "[NAME]": _samples,

@@ -9,6 +9,7 @@ from fuzzytrack.errors import ScenarioError
 from fuzzytrack.shipped import Shipped
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_reader import ScenarioReader
+from fuzzytrack.simulation.scene.files import names_scene
 from fuzzytrack.yamltree import Document
 
 __all__ = [
@@ -76,6 +77,10 @@ def load_scenario(name_or_path: str | os.PathLike[str]) -> Scenario:
     ScenarioError
         If there is no such name, or the file cannot be read, or is no scenario.
     """
+    if isinstance(name_or_path, str) and names_scene(name_or_path):
+        raise ScenarioError(
+            f"{name_or_path} is a scene of many targets; this needs a scenario with one"
+        )
     return ScenarioReader(_SHIPPED.document(name_or_path)).scenario()
 
 

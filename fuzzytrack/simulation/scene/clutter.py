@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -11,10 +12,10 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.scene.region import Region
-from fuzzytrack.simulation.scene.settings import Settings, setting
+from fuzzytrack.simulation.scene.settings import Settings
 from fuzzytrack.simulation.scene.streams import Streams
 
-__all__ = ["CLUTTER", "Clutter", "UniformClutter", "View"]
+__all__ = ["Clutter", "ClutterPlots", "View"]
 
 #: Number of the scan of each plot, and its place, shape (n, 2).
 ClutterPlots = tuple[NDArray[np.int64], Array]
@@ -46,55 +47,27 @@ class View:
 
 
 @dataclass(frozen=True, repr=False)
-class Clutter(Settings):
+class Clutter(Settings, ABC):
     """A kind of clutter."""
 
     #: What it is, for the documentation.
     summary: ClassVar[str] = ""
 
+    @abstractmethod
     def plots(self, view: View, streams: Streams) -> ClutterPlots:
-        """Draw its plots in all scans."""
-        raise NotImplementedError
+        """Draw its plots in all scans.
 
+        Parameters
+        ----------
+        view : View
+            From where, when and in which region the radar looks.
+        streams : Streams
+            Random streams of this clutter.
 
-@dataclass(frozen=True, repr=False)
-class UniformClutter(Clutter):
-    """Plots anywhere in a region; as many in each scan on average, or exactly."""
-
-    summary = "anywhere in a region, in each scan elsewhere"
-
-    count: float | None = setting(None, "mean number of plots in a scan", "", least=0, most=1e7)
-    density: float | None = setting(
-        None, "instead: mean number of plots on a square meter in a scan", "1/m²", least=0
-    )
-    exact: str = setting(
-        "no",
-        "`yes`: exactly this number in each scan; `no`: Poisson",
-        "",
-        "word",
-        ("no", "yes"),
-    )
-    within: Region | None = setting(  # noqa: RUF009 (a setting is no shared value)
-        None, "region, instead of that of the scene", "", "part"
-    )
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if (self.count is None) == (self.density is None):
-            raise ValueError("count or density must be given, and not both")
-
-    def plots(self, view: View, streams: Streams) -> ClutterPlots:
-        """Draw its plots in all scans."""
-        region = self.within or view.region
-        mean = (self.density or 0.0) * region.area if self.count is None else self.count
-        scans = len(view.times)
-        if self.exact == "yes":
-            numbers = np.full(scans, round(mean))
-        else:
-            numbers = streams.stream("count").poisson(mean, scans)
-        places = region.draw(streams.stream("place"), int(numbers.sum()))
-        return np.repeat(np.arange(scans), numbers), places
-
-
-#: Kinds of clutter by name.
-CLUTTER: dict[str, type[Clutter]] = {"uniform": UniformClutter}
+        Returns
+        -------
+        scan : ndarray of int, shape (n,)
+            Number of the scan of each plot.
+        place : ndarray, shape (n, 2)
+            Its place (m).
+        """

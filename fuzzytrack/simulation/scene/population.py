@@ -90,7 +90,7 @@ def _refuse_too_many(scene: Scene, duration: float, scans: int) -> None:
     expected = sum(group.at_start + group.births * duration for group in scene.traffic.values())
     if expected * scans > MOST_STATES:
         raise ValueError(
-            f"scans: {scans} scans of some {expected:.0f} targets are more than {MOST_STATES} "
+            f"the scene has {scans} scans of some {expected:.0f} targets, more than {MOST_STATES} "
             "states; simulate fewer scans or targets"
         )
 

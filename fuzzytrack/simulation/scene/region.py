@@ -86,6 +86,15 @@ class Region(Settings):
         return abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))) / 2
 
     @property
+    def middle(self) -> Array:
+        """Its middle (m); of a polygon the mean of its corners."""
+        return np.array(self.at) if self.polygon is None else self._corners.mean(axis=0)
+
+    def without_hole(self) -> Region:
+        """The region; a disc in place of a ring."""
+        return self if self.disc is None else replace(self, disc=(0.0, self.disc[1]))
+
+    @property
     def _sector(self) -> tuple[float, float]:
         return (0.0, 2 * math.pi) if self.sector is None else self.sector
 

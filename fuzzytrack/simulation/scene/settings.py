@@ -64,7 +64,7 @@ class Setting:
                 raise ValueError(f"{name} must be one of {', '.join(self.words)}, got {value!r}")
             return value
         if self.form in ("number", "whole"):
-            number = self._number(name, value)
+            number = self.number(name, value)
             return int(number) if self.form == "whole" else number
         if self.form == "interval":
             return self._interval(name, value)
@@ -77,7 +77,8 @@ class Setting:
             raise ValueError(f"{name} must be rows of equal length, got {value!r}")
         return rows
 
-    def _number(self, name: str, value: Any) -> float:
+    def number(self, name: str, value: Any) -> float:
+        """One of its numbers; ValueError that begins with `name` if it is not allowed."""
         if value == math.inf and self.limits.most == math.inf and not self.limits.whole:
             return math.inf
         number = value.item() if hasattr(value, "item") else value
@@ -111,7 +112,7 @@ class Setting:
             raise ValueError(
                 f"{name} must be a number or two, the least and the largest, got {len(ends)}"
             )
-        low, high = (self._number(name, end) for end in ends)
+        low, high = (self.number(name, end) for end in ends)
         if low > high:
             raise ValueError(
                 f"{name} must be the least number and the largest, got {self._shown(low)} and "
@@ -120,7 +121,7 @@ class Setting:
         return low, high
 
     def _row(self, name: str, value: Any) -> tuple[float, ...]:
-        row = tuple(self._number(name, each) for each in _listed(name, value))
+        row = tuple(self.number(name, each) for each in _listed(name, value))
         if len(row) not in self.columns:
             lengths = " or ".join(map(str, self.columns))
             raise ValueError(f"{name} must have {lengths} numbers in a row, got {len(row)}")
@@ -128,13 +129,13 @@ class Setting:
 
     def _curve(self, name: str, value: Any) -> tuple[tuple[float, float], ...]:
         if not isinstance(value, Sequence) or isinstance(value, str):
-            return ((0.0, self._number(name, value)),)
+            return ((0.0, self.number(name, value)),)
         rows = []
         for row in _listed(name, value):
             pair = _listed(name, row)
             if len(pair) != 2:
                 raise ValueError(f"{name} must be pairs of numbers, got {len(pair)} in a row")
-            rows.append((float(pair[0]), self._number(name, pair[1])))
+            rows.append((float(pair[0]), self.number(name, pair[1])))
         if any(not a[0] < b[0] for a, b in itertools.pairwise(rows)):
             raise ValueError(f"{name} must be pairs whose first numbers increase, got {value!r}")
         return tuple(rows)

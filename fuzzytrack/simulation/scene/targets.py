@@ -9,6 +9,7 @@ import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
+from fuzzytrack.simulation.scene.legs import Legs, between
 from fuzzytrack.simulation.scene.paths import Paths
 from fuzzytrack.simulation.scene.region import Region
 from fuzzytrack.simulation.scene.settings import Settings, setting
@@ -17,8 +18,6 @@ from fuzzytrack.simulation.scene.streams import Streams
 __all__ = ["TargetGroup", "Targets"]
 
 _TURN = (0.0, 2 * math.pi)
-# Legs of a target that never ends turning; a leg takes a second at least in any real scene.
-_MOST_TURNS = 2_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +82,13 @@ class TargetGroup(Settings):
     )
     leaves: str = setting(
         "no", "whether they end when they leave the region of the scene", "", "word", ("no", "yes")
+    )
+    returns: str = setting(
+        "no",
+        "whether, outside their region, their next turn is toward its middle",
+        "",
+        "word",
+        ("no", "yes"),
     )
     speed: tuple[float, float] = setting((0.0, 0.0), "speed", "m/s", "interval", least=0)
     course: tuple[float, float] = setting(_TURN, "course, clockwise from y", "rad", "interval")
@@ -163,43 +169,24 @@ class TargetGroup(Settings):
         else:
             places = (self.within or region).draw(streams.stream("place"), n)
         heading = math.pi / 2 - _within(streams, "course", self.course, n)
-        durations, moving, rates = self._legs(streams, born, end)
-        speed = _within(streams, "speed", self.speed, n)[:, None] * moving
-        return Targets(Paths.of_legs(places, heading, born, durations, speed, rates), born, gone)
+        speed = _within(streams, "speed", self.speed, n)
+        rest = _within(streams, "rest", self.rest, n)
+        home = (self.within or region).without_hole() if self.returns == "yes" else None
+        moving = np.maximum(end - born - rest, 0.0) if self.turn_rate > 0 else np.zeros(n)
+        legs = Legs(self.leg, self.turn_rate, self.turn_share, self.turn, home)
+        durations, rates = legs.draw(streams, places, heading, speed, moving)
+        speeds = np.repeat(speed[:, None], durations.shape[1], axis=1)
+        if self.rest[1] > 0:
+            none = np.zeros((n, 1))
+            durations = np.concatenate([rest[:, None], durations], axis=1)
+            rates, speeds = (np.concatenate([none, each], axis=1) for each in (rates, speeds))
+        return Targets(Paths.of_legs(places, heading, born, durations, speeds, rates), born, gone)
 
     def _gone(self, streams: Streams, born: Array) -> Array:
         if math.isinf(self.life):
             return np.full(len(born), math.inf)
         return np.asarray(born + streams.stream("life").exponential(self.life, len(born)))
 
-    def _legs(self, streams: Streams, born: Array, end: float) -> tuple[Array, Array, Array]:
-        """Durations, whether they move, and turn rates of legs, each of shape (n, n_legs)."""
-        n = len(born)
-        columns = []
-        if self.rest[1] > 0:
-            rest = _within(streams, "rest", self.rest, n)
-            columns.append((rest, np.zeros(n), np.zeros(n)))
-        ones, none = np.ones(n), np.zeros(n)
-        covered = born + sum(column[0] for column in columns)
-        for number in range(_MOST_TURNS if self.turn_rate > 0 else 0):
-            if not (covered < end).any():
-                break
-            rng = streams.stream("turns", number)
-            u = rng.random((n, 4))
-            straight = -self.leg * np.log1p(-u[:, 0])
-            rate = self.turn_rate * _between(self.turn_share, u[:, 1])
-            turning = _between(self.turn, u[:, 2]) / rate
-            columns.append((straight, ones, none))
-            columns.append((turning, ones, np.where(u[:, 3] < 0.5, -rate, rate)))
-            covered = covered + straight + turning
-        columns.append((none, ones, none))
-        durations, moving, rates = (np.stack(found, axis=1) for found in zip(*columns, strict=True))
-        return durations, moving, rates
-
 
 def _within(streams: Streams, purpose: str, limits: tuple[float, float], count: int) -> Array:
-    return _between(limits, streams.stream(purpose).random(count))
-
-
-def _between(limits: tuple[float, float], u: Array) -> Array:
-    return limits[0] + (limits[1] - limits[0]) * u
+    return between(limits, streams.stream(purpose).random(count))
