@@ -46,13 +46,7 @@ def target_echoes(
     probability = np.where(shaded, probability * (1 - scene.radar.shadowing), probability)
     seen = draw.uniform("detection") < probability
     place = place + _wander(population, scene, draw)
-    distance, bearing = polar_from(own, place)
-    radar = scene.radar
-    far = distance + radar.sigma_range * draw.normal("range", radar.sigma_range > 0)
-    turned = bearing + radar.sigma_bearing * draw.normal("bearing", radar.sigma_bearing > 0)
-    noise = np.stack([far * np.sin(turned), far * np.cos(turned)], axis=1) + own - place
-    for axis in (0, 1) if radar.sigma_position else ():
-        noise[:, axis] += radar.sigma_position * draw.normal(f"axis {axis}", True)
+    noise = _noise(scene, draw, own, place)
     states = np.flatnonzero(seen)
     echoes = Echoes(
         population.scan[states],
@@ -114,6 +108,21 @@ class _Draws:
             for streams, count in zip(self._streams, self._counts, strict=True)
         ]
         return np.concatenate(parts)
+
+
+def _noise(scene: Scene, draw: _Draws, own: Array, place: Array) -> Array:
+    """By what each state is measured elsewhere (m), shape (n, 2)."""
+    radar = scene.radar
+    noise = np.zeros_like(place)
+    if radar.sigma_range or radar.sigma_bearing:
+        distance, bearing = polar_from(own, place)
+        distance += radar.sigma_range * draw.normal("range", radar.sigma_range > 0)
+        bearing += radar.sigma_bearing * draw.normal("bearing", radar.sigma_bearing > 0)
+        noise = np.stack([distance * np.sin(bearing), distance * np.cos(bearing)], axis=1)
+        noise += own - place
+    for axis in (0, 1) if radar.sigma_position else ():
+        noise[:, axis] += radar.sigma_position * draw.normal(f"axis {axis}", True)
+    return noise
 
 
 def _when_seen(

@@ -101,8 +101,9 @@ def simulate_scans(scene: Scene, seed: int = 0) -> SimulatedScans:
     population = Population.drawn(scene, view, seed)
     found, visible = target_echoes(scene, population, view, durations, seed)
     echoes = Echoes.joined([found, *clutter_echoes(scene, view, durations, seed)])
-    lost = clock.stream("lost").random(len(times)) < scene.scans.lost
-    echoes = echoes.where(~lost[echoes.scan])
+    if scene.scans.lost:
+        lost = clock.stream("lost").random(len(times)) < scene.scans.lost
+        echoes = echoes.where(~lost[echoes.scan])
     plots = _Plots.of(echoes, scene, view)
     truth_plot = np.full(len(population.scan), -1)
     own = echoes.state >= 0
@@ -140,22 +141,35 @@ class _Plots:
 
     @classmethod
     def of(cls, echoes: Echoes, scene: Scene, view: View) -> _Plots:
-        distance, bearing = polar_from(view.own[echoes.scan], echoes.place)
-        label, n = merged(echoes.scan, distance, bearing, scene.radar.range_cell, scene.radar.beam)
-        # Echoes of targets come first, so a merged plot has the noise of a target if one is in it.
-        first = np.full(n, len(label), np.int64)
-        np.minimum.at(first, label, np.arange(len(label)))
-        count = np.bincount(label, minlength=n)
-        sums = [np.bincount(label, axis, minlength=n) for axis in echoes.place.T]
-        place = np.stack(sums, axis=1) / count[:, None] + echoes.noise[first]
-        # With an antenna that sees all at once, too, the order must not tell the targets.
-        order = np.lexsort((bearing[first], echoes.time[first], echoes.scan[first]))
+        """Put echoes together that the radar does not resolve."""
+        n = len(echoes.scan)
+        if scene.radar.resolves_all:
+            first = label = np.arange(n)
+            count, place = np.ones(n, np.int64), echoes.place + echoes.noise
+        else:
+            distance, bearing = polar_from(view.own[echoes.scan], echoes.place)
+            label, n = merged(
+                echoes.scan, distance, bearing, scene.radar.range_cell, scene.radar.beam
+            )
+            # Echoes of targets come first: a merged plot has the noise of a target if one is in it.
+            first = np.full(n, len(label), np.int64)
+            np.minimum.at(first, label, np.arange(len(label)))
+            count = np.bincount(label, minlength=n)
+            sums = [np.bincount(label, axis, minlength=n) for axis in echoes.place.T]
+            place = np.stack(sums, axis=1) / count[:, None] + echoes.noise[first]
+        scan, time = echoes.scan[first], echoes.time[first]
+        # Of an antenna that sees all at once, too, the order must not tell the targets.
+        within = (time - view.start) if scene.scans.turning else _bearing(view.own[scan], place)
+        order = np.argsort(scan * (2 * within.max(initial=1.0)) + within, kind="stable")
         row_of = np.empty(n, np.int64)
         row_of[order] = np.arange(n)
-        first = first[order]
         return cls(
-            first, count[order], row_of[label], echoes.scan[first], echoes.time[first], place[order]
+            first[order], count[order], row_of[label], scan[order], time[order], place[order]
         )
+
+
+def _bearing(own: Array, places: Array) -> Array:
+    return polar_from(own, places)[1]
 
 
 def _scans(scene: Scene, view: View, plots: _Plots) -> list[Scan]:
