@@ -138,11 +138,13 @@ class AdaptiveMap(Clutter):
                 grown = math.exp((tracks[i, place + 2] - cells[_BASE]) * rate)
                 add(tracks[i, place], tracks[i, place + 1], change * grown, cells)
 
-        def judge(tracks: Any, i: int, cells: Any) -> None:
-            weight = innocence * unexplained(tracks[i, SCORE])
+        def settle(tracks: Any, i: int, weight: float, cells: Any) -> None:
             change = weight - tracks[i, weight_at]
             if change > _CHANGE or change < -_CHANGE:
                 correct(tracks, i, weight, cells)
+
+        def judge(tracks: Any, i: int, cells: Any) -> None:
+            settle(tracks, i, innocence * unexplained(tracks[i, SCORE]), cells)
 
         def remember(tracks: Any, i: int, plots: Any, j: int, clock: Any, cells: Any) -> None:
             count = int(tracks[i, count_at])
@@ -159,14 +161,14 @@ class AdaptiveMap(Clutter):
         def hit(
             tracks: Any, i: int, plots: Any, j: int, status: float, clock: Any, cells: Any
         ) -> None:
-            if tracks[i, STATUS] == 1.0:
-                judge(tracks, i, cells)
-                remember(tracks, i, plots, j, clock, cells)
-            elif status == 1.0 and tracks[i, KIND] == MOVING:
-                correct(tracks, i, 0.0, cells)
-                final(plots, j, 0.0, cells)
-            else:
+            if status == 2.0:
                 final(plots, j, unexplained(tracks[i, SCORE]), cells)
+                return
+            remember(tracks, i, plots, j, clock, cells)
+            if tracks[i, STATUS] == 2.0 and tracks[i, KIND] == MOVING:
+                settle(tracks, i, 0.0, cells)
+            else:
+                judge(tracks, i, cells)
 
         def miss(tracks: Any, i: int, clock: Any, cells: Any) -> None:
             if tracks[i, STATUS] == 1.0:

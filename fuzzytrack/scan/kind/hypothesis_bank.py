@@ -118,20 +118,26 @@ class HypothesisBank(Kind):
                 - 0.5 * math.log(range_variance * way_variance)
             )
 
+        def withdraw(tracks: Any, i: int) -> float:
+            """Take back that a track moves where evidence is against it; returns the evidence."""
+            against = miss_weight * (1.0 - tracks[i, at + _RATIO]) - tracks[i, MOTION]
+            if tracks[i, KIND] == MOVING and against > withdrawn:
+                tracks[i, KIND] = UNDECIDED
+            return against  # type: ignore[no-any-return]
+
         def decide(tracks: Any, i: int) -> None:
-            evidence = miss_weight * (1.0 - tracks[i, at + _RATIO]) - tracks[i, MOTION]
-            if evidence < moving:
+            against = withdraw(tracks, i)
+            if against < moving:
                 tracks[i, KIND] = MOVING
-                return
-            if tracks[i, KIND] == MOVING and evidence <= withdrawn:
+            if tracks[i, KIND] == MOVING:
                 return
             others = min(tracks[i, at + _LOOSE], tracks[i, at + _WANDER])
-            static = (
+            if (
                 others - tracks[i, at + _STEADY] > margin
                 and tracks[i, SCORE] > static_score
                 and tracks[i, HITS] >= static_hits
-            )
-            tracks[i, KIND] = STATIC if static else UNDECIDED
+            ):
+                tracks[i, KIND] = STATIC
 
         def hit(tracks: Any, i: int, plots: Any, j: int, clock: Any) -> None:
             dt = plots[j, PLOT_TIME] - tracks[i, TIME]
@@ -163,7 +169,6 @@ class HypothesisBank(Kind):
 
         def miss(tracks: Any, i: int, clock: Any) -> None:
             tracks[i, at + _RATIO] -= ratio_rate * tracks[i, at + _RATIO]
-            if tracks[i, HITS] > 1.0:
-                decide(tracks, i)
+            withdraw(tracks, i)
 
         return KindKernels(start, hit, miss)
