@@ -28,7 +28,7 @@ def sample(
     ] = None,
     truth: Annotated[
         str | None,
-        typer.Option(metavar="FILE.csv", help="Write the true positions, in the same columns."),
+        typer.Option(metavar="FILE.csv", help="Write the true positions."),
     ] = None,
     seed: options.Seed = 0,
     json: options.Json = False,
@@ -68,7 +68,7 @@ def sample(
 
 def track_command(kind: SampleKind, file: str) -> str:
     """The command that tracks a sample."""
-    return " ".join(["fuzzytrack track", file, *_as_options(kind.reading)])
+    return " ".join([f"fuzzytrack {kind.command}", file, *_as_options(kind.reading)])
 
 
 def _as_options(reading: Mapping[str, Any]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Small recordings to try things with: simulated plots of a radar, AIS, ADS-B and a sonar.
+"""Small recordings to try things with: simulated plots of radars, AIS, ADS-B and a sonar.
 
 Each has what real recordings have: irregular times, missed plots, noise, turns, and in the sonar's
 plots that are far off. Nothing in them was recorded.
@@ -19,6 +19,9 @@ from fuzzytrack.io.polar import cartesian_to_polar
 from fuzzytrack.reprs import summary
 from fuzzytrack.simulation.noise import check_runs
 from fuzzytrack.simulation.sampling import Sampling
+from fuzzytrack.simulation.scene.files import load_scene
+from fuzzytrack.simulation.scene.simulate import simulate_scans
+from fuzzytrack.simulation.scene.tables import plot_table, truth_table
 from fuzzytrack.simulation.trajectories import constant_velocity, turn
 from fuzzytrack.yamltree import suggestion
 
@@ -40,7 +43,8 @@ class Sample:
     plots : dict of str to sequence
         Columns, a row for each plot, in order of time; NaN where a plot was missed.
     truth : dict of str to sequence
-        The same columns and rows without noise, missed plots and outliers.
+        The same columns and rows without noise, missed plots and outliers; of scans, whose plots
+        have no identity, a row for each true target and scan.
     """
 
     plots: Columns
@@ -59,17 +63,20 @@ class SampleKind:
     summary : str
         One line.
     reading : mapping of str to Any
-        Arguments of `fuzzytrack.track` that fit it.
+        Arguments of `fuzzytrack.track`, or options of its command, that fit it.
     extra : str
         Extra of this package that is needed to read it, or "".
     make : callable
         Makes it from random numbers.
+    command : {"track", "scan"}
+        Command that tracks it: whether its plots have identities, or not.
     """
 
     summary: str
     reading: Mapping[str, Any]
     extra: str
     make: Callable[[np.random.Generator], Sample]
+    command: str = "track"
 
 
 def make_sample(name: str, seed: int = 0) -> Sample:
@@ -77,7 +84,7 @@ def make_sample(name: str, seed: int = 0) -> Sample:
 
     Parameters
     ----------
-    name : {"radar", "ais", "adsb", "sonar"}
+    name : {"radar", "ais", "adsb", "sonar", "scans"}
         Kind of recording; `SAMPLES` says what each holds.
     seed : int
         Seed of times, noise and missed plots, not negative. The targets are always the same.
@@ -355,6 +362,26 @@ def _sonar(rng: np.random.Generator) -> Sample:
     return Sample(plots, truth)
 
 
+# -------------------------------------------------------------------- scans
+
+
+def _scans(rng: np.random.Generator) -> Sample:
+    """Scans of a harbor from a ship that moves: boats, a ferry, a shore, piers, other clutter."""
+    found = simulate_scans(load_scene("harbor:scans.count=120"), int(rng.integers(2**31)))
+    plots = {name: _rounded(values, 3) for name, values in plot_table(found, own=True).items()}
+    truth = {name: _rounded(values, 4) for name, values in truth_table(found).items()}
+    for columns in (plots, truth):
+        columns["time"] = columns.pop("t")
+    return Sample(
+        {name: plots[name] for name in ("scan", "time", "x", "y", "own_x", "own_y")},
+        {name: truth[name] for name in ("time", "id", "x", "y", "vx", "vy")},
+    )
+
+
+def _rounded(values: Sequence[str] | Array, digits: int) -> Sequence[str] | Array:
+    return np.round(values, digits) if isinstance(values, np.ndarray) else values
+
+
 #: Kinds of samples by name.
 SAMPLES = MappingProxyType(
     {
@@ -382,5 +409,12 @@ SAMPLES = MappingProxyType(
             _adsb,
         ),
         "sonar": SampleKind("positions of a diver with spikes and gaps", {"sigma": 2}, "", _sonar),
+        "scans": SampleKind(
+            "scans of a harbor from a moving ship: plots without identities, and clutter",
+            {"scan": "scan", "axes": ("x", "y"), "own": ("own_x", "own_y")},
+            "",
+            _scans,
+            "scan",
+        ),
     }
 )

@@ -23,10 +23,11 @@ def test_the_list_as_json(run):
         ("ais", "geo"),
         ("adsb", "geo"),
         ("sonar", None),
+        ("scans", None),
     ]
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", [n for n, kind in SAMPLES.items() if kind.command == "track"])
 def test_the_command_that_is_listed_tracks_the_sample(run, tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
     told = json.loads(run("sample", name, "-o", f"{name}.csv", "--json").stdout)

@@ -5,11 +5,15 @@ import fuzzytrack as ft
 from fuzzytrack.io.geodetic import LocalFrame
 from fuzzytrack.simulation import SAMPLES, make_sample
 
+#: Samples whose plots have identities, or are of one target.
+TRACKED = [name for name, kind in SAMPLES.items() if kind.command == "track"]
+
 COLUMNS = {
     "radar": ["time", "track", "range", "azimuth"],
     "ais": ["time", "mmsi", "lat", "lon", "sog", "cog"],
     "adsb": ["time", "icao24", "lat", "lon", "alt"],
     "sonar": ["time", "x", "y"],
+    "scans": ["scan", "time", "x", "y", "own_x", "own_y"],
 }
 
 
@@ -37,14 +41,14 @@ def rms(errors):
 
 
 @pytest.mark.parametrize("seed", [0, 7])
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", TRACKED)
 def test_tracks_of_a_sample_are_nearer_to_the_truth_than_its_plots(name, seed):
     truth, plots, filtered = followed(name, seed)
     seen = ~np.isnan(plots).any(axis=1)
     assert rms((filtered - truth)[seen]) < 0.9 * rms((plots - truth)[seen])
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", TRACKED)
 def test_a_sample_is_small_and_its_truth_has_the_same_rows(name):
     sample = make_sample(name)
     assert list(sample.plots) == list(sample.truth) == COLUMNS[name]
@@ -114,6 +118,27 @@ def test_the_sonar_has_spikes_and_gaps():
     assert 5 < far.sum() < 50
     assert not far[:10].any()
     assert np.sum(np.diff(sample.plots["time"]) > 10) == 2
+
+
+def test_scans_have_clutter_and_most_true_targets_have_a_plot_nearby():
+    sample = make_sample("scans")
+    assert list(sample.plots) == COLUMNS["scans"]
+    assert list(sample.truth) == ["time", "id", "x", "y", "vx", "vy"]
+    plots, truth = (
+        {key: np.array(values, float) for key, values in side.items()}
+        for side in (sample.plots, sample.truth)
+    )
+    assert (np.diff(plots["scan"]) >= 0).all()
+    assert 500 <= len(plots["scan"]) <= 2000
+    # The truth has the time of the end of a scan; its plots were made in the 1.68 s before.
+    near, used = 0, np.zeros(len(plots["x"]), bool)
+    for time, *at in zip(truth["time"], truth["x"], truth["y"], strict=True):
+        inside = (plots["time"] <= time) & (plots["time"] > time - 1.7)
+        close = inside & (np.hypot(plots["x"] - at[0], plots["y"] - at[1]) < 20)
+        near += close.any()
+        used |= close
+    assert 0.6 < near / len(truth["x"]) <= 1
+    assert 0.3 < used.mean() < 0.8
 
 
 @pytest.mark.parametrize(
