@@ -14,7 +14,7 @@ import numpy as np
 
 import fuzzytrack as ft
 from fuzzytrack.plotting import *
-from fuzzytrack.scan import Scan, TrackReports
+from fuzzytrack.scan import Scan, ScanTracker
 from fuzzytrack.testbed import monte_carlo
 
 # A turning target, a plot every 4 s, three plots missed.
@@ -52,42 +52,36 @@ many = {
     for alpha in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
 }
 
-# Tracks of a harbor, as a scan tracker reports them: three boats and two buoys, with clutter.
-def harbor(steps=50):
+# A harbor: three boats, of which a radar misses one plot in seven, two buoys, and a shore. The
+# radar is on a ship that moves, too.
+def harbor(steps=60):
     random = np.random.default_rng(5)
     k = np.arange(steps)[:, None]
-    x = [[-300, 250, 60, -150, 220]] + k * [[9, -7, 5, 0, 0]]
-    y = [[-120, 200, -260, 180, -40]] + k * [[3, -4, 8, 0, 0]] + 0.06 * k**2 * [[1, 0, -1, 0, 0]]
-    paths = np.stack([x, y], axis=-1) + np.zeros((steps, 5, 2))
-    seen = paths + random.normal(0, 4, paths.shape)
-    clutter = random.uniform(-350, 350, (steps, 8, 2))
-    own = np.stack([-40 + 2 * k[:, 0], 0 * k[:, 0]], axis=1)
+    x = [[-300, 250, 60]] + k * [[9, -7, 5]]
+    y = [[-120, 180, -260]] + k * [[3, -4, 8]] + 0.05 * k**2 * [[1, 0, -1]]
+    boats = np.stack([x, y], axis=-1)
+    seen = np.where(random.random((steps, 3, 1)) < 0.86, boats, np.nan)
+    buoys = np.array([[-150.0, 180.0], [180.0, -120.0]]) + np.zeros((steps, 2, 2))
+    along = random.uniform(-350, 350, (steps, 7))
+    shore = np.stack([along, 330 - 0.2 * along + random.normal(0, 9, along.shape)], axis=-1)
+    sea = random.uniform(-350, 350, (steps, 4, 2))
+    noise = random.normal(0, 1, (steps, 5, 2)) * np.repeat([1.2, 2.2], [3, 2])[:, None]
+    targets = np.concatenate([seen, buoys], axis=1) + noise
+    plots = np.concatenate([targets, shore, sea], axis=1)
+    own = np.stack([-40.0 + 2 * k[:, 0], 0.0 * k[:, 0]], axis=1)
     scans = [
-        Scan(2.0 * n, np.concatenate([seen[n], clutter[n]]), own=tuple(own[n]))
+        Scan(2.0 * n, plots[n][np.isfinite(plots[n, :, 0])], own=tuple(own[n]))
         for n in range(steps)
     ]
-    n, j = (each.ravel() for each in np.indices((steps, 5)))
-    status = np.where(n < 4, 0, np.where((j == 1) & (n > 20) & (n < 28), 2, 1)).astype(np.uint8)
-    kind = np.where(n < 4, 0, np.where(j < 3, 1, 2)).astype(np.uint8)
-    number = np.where((j == 0) & (n >= 30), 9, j + 1)
-    speed = np.gradient(paths, 2.0, axis=0).reshape(-1, 2)
-    held = paths.reshape(-1, 2) + random.normal(0, 2, (len(n), 2))
-    deviation = np.full((len(n), 4), 2.0)
-    rest = (np.full(len(n), 0.98), np.zeros(len(n)), np.where(status == 2, -1, j))
-    found = TrackReports(n, 2.0 * n, number, held, speed, deviation, status, kind, *rest)
-    boats = j < 3
-    names = np.array(["ferry", "tug", "yacht"])[j[boats]]
-    truth = 2.0 * n[boats], names, paths[:, :3].reshape(-1, 2)
-    return scans, truth, found
+    names = np.tile(["ferry", "tug", "yacht"], steps)
+    return scans, (np.repeat(2.0 * np.arange(steps), 3), names, boats.reshape(-1, 2))
 
 
-scans, targets, reports = harbor()
-
-
-# Density of clutter (plots/m² and scan): high along a shore.
-def shore(x, y):
-    return 5e-7 + 2e-4 * np.exp(-(((y - 280 + 0.4 * x) / 60) ** 2))
-
+scans, targets = harbor()
+tracked = ScanTracker().run(scans)
+session = ScanTracker().start()
+for scan in scans[:40]:
+    session.step(scan)
 
 # Four trackers on 40 random draws of a turning target.
 trackers = {
@@ -186,9 +180,11 @@ PICTURES = {
         "plot_errors(both | many, truth)",
     ],
     "Scans": [
-        'plot_scan(reports, scans, targets, ["east", "north"])',
-        'plot_clutter_map(shore, scans, axes_names=["east", "north"])',
-        'plot_scores(ft.score(reports, targets, truth_lists="moving"))',
+        'plot_scan(tracked, scans, targets, ["east", "north"])',
+        'plot_gates(session, scans[40], ((-60, 300), (-170, 130)), ["east", "north"])',
+        'plot_clutter_map(session, scans[:40], axes_names=["east", "north"])',
+        "plot_life_bars(tracked, targets)",
+        'plot_scores(ft.score(tracked, targets, truth_lists="moving"))',
     ],
     "Experiments": [
         'plot_comparison(overall, sure, reference={"plots": found.measured_rmse})',

@@ -19,6 +19,8 @@ from fuzzytrack.plotting.experiments import (
 )
 from fuzzytrack.plotting.gain_plane import plot_gain_plane
 from fuzzytrack.plotting.gains_over_time import plot_gains_over_time
+from fuzzytrack.plotting.gates import plot_gates
+from fuzzytrack.plotting.life_bars import plot_life_bars
 from fuzzytrack.plotting.memberships import plot_memberships
 from fuzzytrack.plotting.noise import plot_noise_against_lag, plot_noise_ratio, plot_noise_surfaces
 from fuzzytrack.plotting.optimum import plot_motion_gains, plot_optimal_curves, plot_optimal_gains
@@ -43,6 +45,8 @@ __all__ = [
     "plot_gain_plane",
     "plot_gain_surfaces",
     "plot_gains_over_time",
+    "plot_gates",
+    "plot_life_bars",
     "plot_memberships",
     "plot_motion_gains",
     "plot_noise_against_lag",

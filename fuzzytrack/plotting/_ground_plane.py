@@ -68,15 +68,28 @@ class GroundPlane:
         across, up = self.order
         return positions[:, across] / self.scale, positions[:, up] / self.scale
 
-    def finish(self, ax: Axes) -> None:
-        """Labels, equal scales and the grid."""
+    def finish(self, ax: Axes, *, limits: Array | None = None) -> None:
+        """Labels, equal scales and the grid.
+
+        Parameters
+        ----------
+        limits : ndarray, shape (2, 2), optional
+            Corners of what is shown (m); the axes are then as long as that. Else all that is drawn
+            is shown, and more to one side or the other, so that the axes fill their place.
+        """
         ax.set_xlabel(self.labels[0])
         ax.set_ylabel(self.labels[1])
         for axis in (ax.xaxis, ax.yaxis):
             # Others are of axes that a user has given.
             if isinstance(formatter := axis.get_major_formatter(), ScalarFormatter):
                 formatter.set_useOffset(False)
-        ax.set_aspect(1.0, adjustable="datalim")
-        # Before the figure is laid out, which leaves room for the labels of the limits.
-        ax.apply_aspect()
+        if limits is None:
+            ax.set_aspect(1.0, adjustable="datalim")
+            # Before the figure is laid out, which leaves room for the labels of the limits.
+            ax.apply_aspect()
+        else:
+            x, y = self.shown(limits)
+            ax.set_xlim(x.min(), x.max())
+            ax.set_ylim(y.min(), y.max())
+            ax.set_aspect(1.0, adjustable="box")
         shared.finish(ax)

@@ -10,13 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array, Mask
+from fuzzytrack.plotting import _figures as shared
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
 
-__all__ = ["COASTING", "MOVING", "STATIC", "TENTATIVE", "ReportedTracks", "plots_of", "runs"]
+__all__ = [
+    "COASTING",
+    "KIND_COLORS",
+    "MOVING",
+    "STATIC",
+    "TENTATIVE",
+    "ReportedTracks",
+    "plots_of",
+    "runs",
+]
 
 MOVING, STATIC = KINDS.index("moving"), KINDS.index("static")
 TENTATIVE, COASTING = STATUSES.index("tentative"), STATUSES.index("coasting")
+
+
+#: Colors by kind, where tracks have none of their own.
+KIND_COLORS = {"undecided": shared.ORANGE, "moving": shared.BLUE, "static": shared.GRAY}
 
 
 class _Reported(Protocol):

@@ -93,11 +93,7 @@ def plot_clutter_map(
     _draw_bar(figure, panel, mesh)
     if scans and recent > 0:
         _draw_scans(panel, plane, scans, recent)
-    plane.finish(panel)
-    panel.set_xlim(across.min(), across.max())
-    panel.set_ylim(up.min(), up.max())
-    # Which fill the axes, so that no empty margin is beside the map.
-    panel.set_aspect(1.0, adjustable="box")
+    plane.finish(panel, limits=np.array([[x0, y0], [x1, y1]]))
     panel.grid(visible=False)
     if panel.get_legend_handles_labels()[0]:
         shared.legend_below(panel)

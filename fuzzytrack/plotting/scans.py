@@ -26,9 +26,9 @@ from fuzzytrack.plotting._reported_tracks import (
 )
 from fuzzytrack.plotting._track_labels import label_ends
 from fuzzytrack.plotting._track_styles import STYLES, darken_plots, track_colors
-from fuzzytrack.plotting._true_paths import TruePaths, Truth
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import TrackReports
+from fuzzytrack.scoring.object_paths import ObjectPaths
 
 __all__ = ["plot_scan"]
 
@@ -47,7 +47,7 @@ _WIDTH = 6.8
 def plot_scan(
     result: TrackReports | Any,
     scans: Sequence[Scan] | None = None,
-    truth: Truth | None = None,
+    truth: Any = None,
     axes_names: Sequence[str] = ("x", "y"),
     *,
     own: ArrayLike | None = None,
@@ -63,8 +63,8 @@ def plot_scan(
         where they coast, and dotted while they are tentative.
     scans : sequence of Scan, optional
         The scans, for the plots and the path of the own ship.
-    truth : (times, identities, positions), optional
-        True positions of shape (n, 2) (m), in any order.
+    truth : tuple, mapping or Positions, optional
+        True positions as `fuzzytrack.score` takes them: (time, id, position), for example.
     axes_names : sequence of str
         Names of the two axes. North, or what begins with it, is drawn upwards.
     own : array_like, shape (n, 2), optional
@@ -81,7 +81,7 @@ def plot_scan(
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If `result` has no reports, or shapes do not fit.
 
     Notes
@@ -92,14 +92,14 @@ def plot_scan(
     tracks = ReportedTracks.of(result)
     if not static:
         tracks = tracks.where(tracks.kind != STATIC)
-    paths = None if truth is None else TruePaths.of(truth)
+    paths = ObjectPaths.of(truth)
     plots, ship = plots_of(scans), _own_path(own, scans, result)
-    shown = [tracks.reports.position, *([] if paths is None else [paths.position])]
-    plane = GroundPlane.of(axes_names, np.concatenate([*shown, plots, ship]))
+    everything = np.concatenate([tracks.reports.position, paths.position, plots, ship])
+    plane = GroundPlane.of(axes_names, everything)
     figure, (panel,) = shared.panels("ax", ax, 1, columns=1, size=plane.size(_WIDTH))
     picture = _Picture(panel, plane, tracks)
     picture.draw_plots(plots)
-    if paths is not None:
+    if len(paths):
         picture.draw_truth(paths)
     picture.draw_tracks()
     picture.draw_own(ship)
@@ -152,11 +152,11 @@ class _Picture:
             style |= {"markersize": 2.6 if len(plots) < 2000 else 1.8}
             self.ax.plot(*self.plane.shown(plots), label="plots", **style)
 
-    def draw_truth(self, paths: TruePaths) -> None:
+    def draw_truth(self, paths: ObjectPaths) -> None:
         """Lines of true targets, with a gap between two."""
         points = np.insert(paths.position, paths.edges[1:-1], np.nan, axis=0)
-        # Above the broader lines of tracks.
-        style = {**STYLES["true"], "linewidth": 0.7, "zorder": 2.9}
+        # A broad line below those of tracks, which would hide a thin one.
+        style = {**STYLES["true"], "color": "0.78", "linewidth": 3.6, "zorder": 2.2}
         self.ax.plot(*self.plane.shown(points), label="true", **style)
 
     def draw_own(self, ship: Array) -> None:
@@ -165,7 +165,7 @@ class _Picture:
             return
         x, y = self.plane.shown(ship)
         if np.ptp(ship, axis=0).max() > 0:
-            self.ax.plot(x, y, color=shared.INK, linewidth=1.0, linestyle=(0, (6, 2)), zorder=2.2)
+            self.ax.plot(x, y, color=shared.INK, linewidth=1.0, linestyle=(0, (6, 2)), zorder=2.25)
         self.ax.plot(x[-1:], y[-1:], label="own ship", **STYLES["sensor"])
 
     def draw_tracks(self) -> None:

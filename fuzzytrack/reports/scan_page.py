@@ -14,7 +14,7 @@ import numpy as np
 
 from fuzzytrack.io.files import check_output, whole_file
 from fuzzytrack.plurals import counted
-from fuzzytrack.reports.scan_page_data import Shown, Truth, as_script, page_data
+from fuzzytrack.reports.scan_page_data import Shown, as_script, page_data
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import KINDS
 from fuzzytrack.version import __version__
@@ -30,7 +30,7 @@ def write_scan_page(
     path: str | os.PathLike[str],
     result: Any,
     scans: Sequence[Scan] | None = None,
-    truth: Truth | None = None,
+    truth: Any = None,
     axes_names: Sequence[str] = ("x", "y"),
     *,
     title: str = "Tracks of a scan tracker",
@@ -48,8 +48,8 @@ def write_scan_page(
         What was reported.
     scans : sequence of Scan, optional
         The scans, for the plots and the path of the own ship.
-    truth : (times, identities, positions), optional
-        True positions of shape (n, 2) (m), in any order.
+    truth : tuple, mapping or Positions, optional
+        True positions as `fuzzytrack.score` takes them: (time, id, position), for example.
     axes_names : sequence of str
         Names of the two axes. North, or what begins with it, is drawn upwards.
     title : str
@@ -70,7 +70,7 @@ def write_scan_page(
     ------
     OSError
         If the file cannot be written.
-    ValueError
+    TypeError, ValueError
         If `result` has no reports, `scan` is out of range, or shapes do not fit.
 
     Notes

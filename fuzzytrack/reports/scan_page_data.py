@@ -15,11 +15,10 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.io.map_axes import map_axes
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import KINDS, TrackReports
+from fuzzytrack.scoring.object_paths import ObjectPaths
 
-__all__ = ["Shown", "Truth", "as_script", "page_data"]
+__all__ = ["Shown", "as_script", "page_data"]
 
-#: Times (s), identities and positions (m) of true targets, in any order.
-Truth = tuple[ArrayLike, ArrayLike, ArrayLike]
 _MOVING = KINDS.index("moving")
 # Existence that is not known.
 _UNKNOWN = 255
@@ -131,14 +130,14 @@ def _whole_tracks(reports: TrackReports, most: int) -> tuple[TrackReports, str]:
 
 
 def page_data(
-    shown: Shown, truth: Truth | None, axes_names: Sequence[str], scan: int | None
+    shown: Shown, truth: Any, axes_names: Sequence[str], scan: int | None
 ) -> Mapping[str, Any]:
     """Values of the page as JSON has them, arrays as base64 of little-endian numbers.
 
     Parameters
     ----------
     shown : Shown
-    truth : Truth or None
+    truth : tuple, mapping, Positions or None
     axes_names : sequence of str
         Names of the two axes; north is drawn upwards.
     scan : int or None
@@ -185,22 +184,13 @@ def page_data(
     }
 
 
-def _truth_data(truth: Truth | None, order: tuple[int, int], origin: Array) -> dict[str, Any]:
-    none: Truth = ([], [], np.empty((0, 2)))
-    time, ids, places = none if truth is None else truth
-    position = np.asarray(places, np.float64)
-    if position.shape != (np.size(time), 2) or np.size(ids) != np.size(time):
-        raise ValueError(
-            "truth: needs times and identities of shape (n,) and positions of shape (n, 2), "
-            f"got {np.shape(time)}, {np.shape(ids)} and {position.shape}"
-        )
-    names, which = np.unique(np.asarray(ids, str), return_inverse=True)
-    rows = np.lexsort((np.asarray(time, np.float64), which))
+def _truth_data(truth: Any, order: tuple[int, int], origin: Array) -> dict[str, Any]:
+    paths = ObjectPaths.of(truth)
     return {
-        "names": names.tolist(),
-        "from": _text(np.searchsorted(which[rows], np.arange(len(names) + 1)), "<u4"),
-        "time": _text(np.asarray(time, np.float64)[rows], "<f8"),
-        "place": _text(position[rows][:, order] - origin, "<f4"),
+        "names": list(paths.names),
+        "from": _text(paths.edges, "<u4"),
+        "time": _text(paths.time, "<f8"),
+        "place": _text(paths.position[:, order] - origin, "<f4"),
     }
 
 

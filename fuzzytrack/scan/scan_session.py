@@ -259,7 +259,7 @@ class ScanSession:
         else:
             rows = rows.copy()
         plot = whole[:, REPORT_PLOT - REPORT_ID]
-        if given is not None and len(plot):
+        if given is not None and len(given):
             plot = np.where(plot >= 0, np.asarray(given)[np.maximum(plot, 0)], -1)
         words = whole[:, REPORT_STATUS - REPORT_ID : REPORT_KIND - REPORT_ID + 1].astype(np.uint8)
         return TrackReports(

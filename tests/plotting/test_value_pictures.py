@@ -7,6 +7,7 @@ from matplotlib import pyplot as plt
 import fuzzytrack as ft
 from fuzzytrack.gains.certificate import error_matrix
 from fuzzytrack.plotting import plot_certificate, plot_memberships
+from fuzzytrack.scan import Scan, ScanTracker
 from fuzzytrack.testbed.comparison import compare
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.recorded_comparison import compare_recorded
@@ -101,3 +102,18 @@ def test_results_draw_their_errors():
         (ax,) = recorded.plot().axes
         assert ax.get_xlabel() == label
         np.testing.assert_allclose(points(ax), recorded.errors)
+
+
+def test_a_scan_result_draws_its_tracks_and_lists_them():
+    scans = [
+        Scan(1.7 * k, np.array([[300.0 + 5.0 * k, 200.0], [-80.0, 4.0 * k]])) for k in range(15)
+    ]
+    result = ScanTracker().run(scans)
+    names = [text.get_text() for text in result.plot(scans).axes[0].get_legend().get_texts()]
+    assert names == ["plots", "moving", "start", "in the last scan", "own ship"]
+    page = result._repr_html_()
+    assert "Scan tracker default" in page
+    # Three facts, and a row for each of two tracks.
+    assert page.count("<td") == 3 + 2 * 4
+    assert ">moving<" in page
+    assert "No track was reported" in ScanTracker().run([])._repr_html_()
