@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         NoRuleFiresWarning,
         PluginWarning,
         RuleBaseError,
+        ScannerError,
         TrackWarning,
     )
     from fuzzytrack.fuzzy.fuzzification import Fuzzification
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
         plot_track,
     )
     from fuzzytrack.recordings.tracking import TrackedRecording, track
+    from fuzzytrack.scan.scanners import load_scanner, shipped_scanners
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
     from fuzzytrack.schedulers.reachable_gains import certify
     from fuzzytrack.scoring.score_tracks import score
@@ -52,6 +54,7 @@ __all__ = [
     "PluginWarning",
     "RuleBase",
     "RuleBaseError",
+    "ScannerError",
     "Scores",
     "TrackResult",
     "TrackState",
@@ -62,6 +65,7 @@ __all__ = [
     "alpha_beta_from_w",
     "certify",
     "load_rulebase",
+    "load_scanner",
     "loads_rulebase",
     "plot_gain_plane",
     "plot_gain_surfaces",
@@ -70,6 +74,7 @@ __all__ = [
     "plot_track",
     "score",
     "shipped_rulebases",
+    "shipped_scanners",
     "track",
     "tune",
     "w_from_alpha_beta",
@@ -82,6 +87,7 @@ _HOMES = {
         "NoRuleFiresWarning",
         "PluginWarning",
         "RuleBaseError",
+        "ScannerError",
         "TrackWarning",
     ),
     "fuzzy.fuzzification": ("Fuzzification",),
@@ -97,6 +103,7 @@ _HOMES = {
         "plot_track",
     ),
     "recordings.tracking": ("TrackedRecording", "track"),
+    "scan.scanners": ("load_scanner", "shipped_scanners"),
     "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),
     "schedulers.reachable_gains": ("certify",),
     "scoring.score_tracks": ("score",),

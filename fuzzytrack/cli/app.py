@@ -60,6 +60,10 @@ COMMANDS = {
         "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
     "rulebase": ("rulebase:rulebase", "List, show, copy, check, explain and edit rule bases."),
+    "scanner": (
+        "scanner:scanner",
+        "List, show, check and copy configurations of scan trackers, and list their parts.",
+    ),
     "design": ("design:design", "Compute gains by a design rule, and show their properties."),
     "completion": (
         "completion:completion",

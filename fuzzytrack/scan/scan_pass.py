@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache
 from types import FunctionType
@@ -10,6 +12,7 @@ from typing import Any, NamedTuple
 
 from fuzzytrack.errors import PluginError, in_one_sentence
 from fuzzytrack.kernels.compile import compiled
+from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.scan.part import Part
 from fuzzytrack.scan.scan_parts import ScanParts
 from fuzzytrack.scan.setting import Setting
@@ -17,12 +20,14 @@ from fuzzytrack.scan.stages.pairs import assignment_stage, pairs_stage
 from fuzzytrack.scan.stages.plots import DONE, density_stage, plots_stage
 from fuzzytrack.scan.stages.tracks import follow_stage, report_stage, start_stage
 
-__all__ = ["PAIRS", "ScanPass", "scan_pass"]
+__all__ = ["PAIRS", "ScanPass", "compiling_by_stage", "learn_code", "scan_pass", "sharing_code"]
 
 #: Number of the stage that finds pairs; it is repeated when there was no room for them.
 PAIRS = 2
 
 Stage = Callable[..., int]
+#: What makes compiled code of a function.
+Compile = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 class Stages(NamedTuple):
@@ -60,18 +65,73 @@ class ScanPass:
     compiled: bool
 
 
-@lru_cache(maxsize=64)
 def scan_pass(tracker: ScanParts, plain: bool = False) -> ScanPass:
     """Stages of a tracker; `plain` runs all of them in plain Python."""
-    stages, density, in_python = _stages(tracker)
-    if plain:
-        return ScanPass(_in_turn(stages), stages.report, density, False)
+    code = _sharing.get()
+    if code is None or plain:
+        return _own_pass(tracker, plain, _by_stage.get())
+    return _made(tracker, code.compiled)
+
+
+def learn_code(tracker: ScanParts, code: SharedCode) -> None:
+    """Note the numbers of a tracker, before `sharing_code` compiles."""
+    stages, _, in_python = _stages(tracker)
     if not any(in_python):
-        whole = _compiled(tracker, _one_function(stages))
-        return ScanPass(whole, _compiled(tracker, stages.report), density, True)
+        code.learn(_one_function(stages))
+        return
+    for stage, slow in zip(stages, in_python, strict=True):
+        if not slow:
+            code.learn(stage)
+
+
+@contextmanager
+def sharing_code(code: SharedCode) -> Iterator[None]:
+    """Let sessions that begin inside share compiled code with those that differ in numbers only.
+
+    Each session must have ended before the next one begins: they read their numbers from the same
+    memory.
+    """
+    before = _sharing.set(code)
+    try:
+        yield
+    finally:
+        _sharing.reset(before)
+
+
+@contextmanager
+def compiling_by_stage() -> Iterator[None]:
+    """Let sessions that begin inside compile each stage by itself.
+
+    Trackers that differ in one part then compile only the stages that call it.
+    """
+    before = _by_stage.set(True)
+    try:
+        yield
+    finally:
+        _by_stage.reset(before)
+
+
+_sharing: ContextVar[SharedCode | None] = ContextVar("sharing", default=None)
+_by_stage: ContextVar[bool] = ContextVar("by_stage", default=False)
+
+
+@lru_cache(maxsize=64)
+def _own_pass(tracker: ScanParts, plain: bool, by_stage: bool) -> ScanPass:
+    if plain:
+        stages, density, _ = _stages(tracker)
+        return ScanPass(_in_turn(stages), stages.report, density, False)
+    return _made(tracker, compiled, by_stage)
+
+
+def _made(tracker: ScanParts, compile: Compile, by_stage: bool = False) -> ScanPass:
+    """Stages of a tracker, compiled as far as they can be."""
+    stages, density, in_python = _stages(tracker)
+    if not (by_stage or any(in_python)):
+        whole = _compiled(tracker, _one_function(stages), compile)
+        return ScanPass(whole, _compiled(tracker, stages.report, compile), density, True)
     mixed = Stages(
         *(
-            stage if slow else _compiled(tracker, stage)
+            stage if slow else _compiled(tracker, stage, compile)
             for stage, slow in zip(stages, in_python, strict=True)
         )
     )
@@ -181,9 +241,11 @@ def _in_turn(stages: Stages) -> Callable[..., int]:
     return run
 
 
-def _compiled(tracker: ScanParts, function: Callable[..., Any]) -> Callable[..., Any]:
+def _compiled(
+    tracker: ScanParts, function: Callable[..., Any], compile: Compile
+) -> Callable[..., Any]:
     """Compiled code of a function; an error of the compiler names the parts that are not ours."""
-    code = compiled(function)
+    code = compile(function)
     foreign = [
         f"{role} {type(getattr(tracker, role)).__name__}"
         for role in tracker.roles()

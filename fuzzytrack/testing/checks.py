@@ -1,4 +1,4 @@
-"""All checks of a scheduler or tracker: by name, or in one call."""
+"""All checks of a scheduler, a tracker or a part: by name, or in one call."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from fuzzytrack.errors import PluginError, in_one_sentence
+from fuzzytrack.scan.part import Part
 from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.testing.part_checks import part_checks, role_of
 from fuzzytrack.testing.samples import expect
 from fuzzytrack.testing.scheduler_checks import SCHEDULER_CHECKS
 from fuzzytrack.testing.tracker_checks import LANE_CHECKS, TRACKER_CHECKS
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
-__all__ = ["Check", "check_scheduler", "check_tracker", "checks_for"]
+__all__ = ["Check", "check_part", "check_scheduler", "check_tracker", "checks_for"]
 
 #: What every tracker has.
 _METHODS = ("run", "start", "step", "predict")
@@ -29,7 +31,7 @@ class Check:
     name : str
         Name of the promise, such as ``batch-equals-single``. It does not change from version to
         version.
-    subject : GainScheduler or Tracker
+    subject : GainScheduler, Tracker or Part
         What is checked.
     promise : callable
         ``promise(subject, seed)`` raises AssertionError if the promise is broken.
@@ -62,12 +64,12 @@ class Check:
             ) from error
 
 
-def checks_for(subject: GainScheduler | Tracker, seed: int = 0) -> Iterator[Check]:
-    """All checks that a scheduler or tracker has to pass.
+def checks_for(subject: GainScheduler | Tracker | Part, seed: int = 0) -> Iterator[Check]:
+    """All checks that a scheduler, a tracker, or a part of a scan tracker has to pass.
 
     Parameters
     ----------
-    subject : GainScheduler or Tracker
+    subject : GainScheduler, Tracker or Part
     seed : int
         Seed of the random plots.
 
@@ -79,7 +81,7 @@ def checks_for(subject: GainScheduler | Tracker, seed: int = 0) -> Iterator[Chec
     Raises
     ------
     AssertionError
-        If `subject` is neither.
+        If `subject` is none of these.
 
     Examples
     --------
@@ -90,6 +92,9 @@ def checks_for(subject: GainScheduler | Tracker, seed: int = 0) -> Iterator[Chec
     """
     if isinstance(subject, GainScheduler):
         named = SCHEDULER_CHECKS
+    elif isinstance(subject, Part):
+        _expect_a_part(subject)
+        named = part_checks(subject)
     else:
         _expect_a_tracker(subject)
         named = LANE_CHECKS if isinstance(subject, LaneTracker) else TRACKER_CHECKS
@@ -150,6 +155,38 @@ def check_tracker(tracker: Tracker, seed: int = 0) -> None:
     _expect_a_tracker(tracker)
     for check in checks_for(tracker, seed):
         check()
+
+
+def check_part(part: Part, seed: int = 0) -> None:
+    """Check that a part of a scan tracker keeps the contract of its role.
+
+    Checked are: numbers and words that are declared, with limits that hold; that it is a value;
+    kernels of the form of the role, which can be compiled unless it sets ``plain = True``; what the
+    role promises, such as an association that is one to one along the edges that are given; and,
+    in the default tracker in the place of its own part, that scans give the same tracks again, also
+    where a session is resumed, and compiled as in plain Python.
+
+    Parameters
+    ----------
+    part : Part
+    seed : int
+        Seed of plots and tracks.
+
+    Raises
+    ------
+    AssertionError
+        If a promise is broken; says which, after the name of the check.
+    """
+    _expect_a_part(part)
+    for check in checks_for(part, seed):
+        check()
+
+
+def _expect_a_part(subject: Any) -> None:
+    expect(
+        isinstance(subject, Part) and role_of(subject) is not None,
+        f"must be a part of a role of a scan tracker, got {_spelt(subject)}",
+    )
 
 
 def _expect_a_tracker(subject: Any) -> None:

@@ -6,13 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from fuzzytrack.scan.part import Part
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.testing.checks import checks_for
 from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["parametrize_with_checks"]
 
-Subject = GainScheduler | Tracker
+Subject = GainScheduler | Tracker | Part
 
 
 def parametrize_with_checks(subjects: Iterable[Subject] | Mapping[str, Subject]) -> Any:
@@ -20,7 +21,7 @@ def parametrize_with_checks(subjects: Iterable[Subject] | Mapping[str, Subject])
 
     Parameters
     ----------
-    subjects : iterable of GainScheduler or Tracker, or mapping
+    subjects : iterable of GainScheduler, Tracker or Part, or mapping
         The objects. The test of a check is called ``OBJECT-CHECK``, for example
         ``FixedGains-batch-equals-single``; the keys of a mapping stand in the place of the names of
         classes.

@@ -125,4 +125,4 @@ def _text(description: str) -> Schema:
 
 
 def _first_line(kind: type) -> str:
-    return (kind.__doc__ or "").strip().partition("\n")[0]
+    return (kind.__doc__ or "").strip().partition("\n")[0].replace("`", "")
