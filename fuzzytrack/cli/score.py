@@ -75,7 +75,9 @@ def score(
     ] = None,
     lag: Annotated[
         str,
-        _option(_TIMES, "S|auto|none", "How late the clock of the tracks is, s; auto fits it."),
+        _option(
+            _TIMES, "S|GROUP=S,…|auto|none", "How late the clock of the tracks is, s; auto fits it."
+        ),
     ] = "none",
     scans: Annotated[
         _Text,
@@ -197,11 +199,18 @@ def _lag(text: str) -> Lag:
     words: dict[str, Lag] = {"auto": "auto", "none": None}
     if text in words:
         return words[text]
+    if "=" in text:
+        found = options.pairs(text, "--lag")
+        return {name: _number(value, text) for name, value in found.items()}
+    return _number(text, text)
+
+
+def _number(value: str, text: str) -> float:
     try:
-        return float(text)
+        return float(value)
     except ValueError:
         raise ValueError(
-            f"--lag: expected a number of seconds, auto or none, got {text!r}"
+            f"--lag: expected seconds, GROUP=SECONDS,…, auto or none, got {text!r}"
         ) from None
 
 

@@ -11,8 +11,13 @@ __all__ = ["best_assignment"]
 
 Integers = NDArray[np.int64]
 
+# Members of a problem up to which it is not worth looking for its components.
+_FEW = 100
 
-def best_assignment(left: Integers, right: Integers, gain: Array) -> Integers:
+
+def best_assignment(
+    left: Integers, right: Integers, gain: Array, problem: Integers | None = None
+) -> Integers:
     """Choose pairs, each member in one at most, with the greatest sum of gains.
 
     Many problems that have no member in common may be given at once, as those of all instants.
@@ -23,6 +28,8 @@ def best_assignment(left: Integers, right: Integers, gain: Array) -> Integers:
         Members of the possible pairs, numbered from 0; no pair is given twice.
     gain : ndarray, shape (n_pairs,)
         What a pair is worth; pairs that are worth 0 or less are never chosen.
+    problem : ndarray of int, shape (n_pairs,), optional
+        Numbers of the problems, in order, if pairs and members are sorted by them.
 
     Returns
     -------
@@ -32,7 +39,8 @@ def best_assignment(left: Integers, right: Integers, gain: Array) -> Integers:
     Notes
     -----
     A pair whose members have no other is chosen at once. The rest falls into connected components,
-    each solved by the algorithm of Jonker and Volgenant as modified by Crouse (2016), in SciPy.
+    each solved by the algorithm of Jonker and Volgenant as modified by Crouse (2016), in SciPy; a
+    problem with few members is solved as a whole.
     """
     useful = np.flatnonzero(gain > 0)
     left, right, gain = left[useful], right[useful], gain[useful]
@@ -43,13 +51,37 @@ def best_assignment(left: Integers, right: Integers, gain: Array) -> Integers:
         return useful
     chosen = [np.flatnonzero(alone)]
     rest = np.flatnonzero(~alone)
-    rows, row = np.unique(left[rest], return_inverse=True)
-    columns, column = np.unique(right[rest], return_inverse=True)
+    if problem is None:
+        chosen += _by_components(left, right, gain, rest)
+    else:
+        numbers = problem[useful[rest]]
+        for part in np.split(rest, np.flatnonzero(numbers[1:] != numbers[:-1]) + 1):
+            row, column = left[part] - left[part[0]], right[part] - right[part].min()
+            shape = int(row[-1]) + 1, int(column.max()) + 1
+            if max(shape) <= _FEW:
+                chosen.append(part[_solved(row, column, gain[part], shape)])
+            else:
+                chosen += _by_components(left, right, gain, part)
+    return np.asarray(useful[np.sort(np.concatenate(chosen))])
+
+
+def _by_components(left: Integers, right: Integers, gain: Array, pairs: Integers) -> list[Integers]:
+    """Chosen ones of some pairs, component by component."""
+    rows, row = np.unique(left[pairs], return_inverse=True)
+    columns, column = np.unique(right[pairs], return_inverse=True)
     component = _components(row, column, len(rows), len(columns))
     order = np.argsort(component, kind="stable")
+    chosen = []
     for part in np.split(order, np.flatnonzero(np.diff(component[order])) + 1):
-        chosen.append(rest[part[_solved(row[part], column[part], gain[rest[part]])]])
-    return np.asarray(useful[np.sort(np.concatenate(chosen))])
+        mine, yours = row[part], column[part]
+        if len(part) == 1:
+            chosen.append(pairs[part])
+            continue
+        height, mine = np.unique(mine, return_inverse=True)
+        width, yours = np.unique(yours, return_inverse=True)
+        found = _solved(mine, yours, gain[pairs[part]], (len(height), len(width)))
+        chosen.append(pairs[part[found]])
+    return chosen
 
 
 def _components(row: Integers, column: Integers, rows: int, columns: int) -> Integers:
@@ -62,17 +94,15 @@ def _components(row: Integers, column: Integers, rows: int, columns: int) -> Int
     return np.asarray(connected_components(graph, directed=False)[1][row], dtype=np.int64)
 
 
-def _solved(row: Integers, column: Integers, gain: Array) -> Integers:
-    """Chosen pairs of one component, by their places in it."""
+def _solved(row: Integers, column: Integers, gain: Array, shape: tuple[int, int]) -> Integers:
+    """Chosen pairs of one problem, by their places in it."""
     from scipy.optimize import linear_sum_assignment
 
-    rows, row = np.unique(row, return_inverse=True)
-    columns, column = np.unique(column, return_inverse=True)
-    if len(rows) == 1 or len(columns) == 1:
+    if min(shape) == 1:
         return np.array([int(np.argmax(gain))])
-    table = np.zeros((len(rows), len(columns)))
+    table = np.zeros(shape)
     table[row, column] = gain
-    place = np.full(table.shape, -1, dtype=np.int64)
+    place = np.full(shape, -1, dtype=np.int64)
     place[row, column] = np.arange(len(row))
     found = place[linear_sum_assignment(table, maximize=True)]
     # A pair that is not possible stands for two members that are left alone.

@@ -25,6 +25,7 @@ _INTERVALS, _SHARE = 12, 0.25
 _STEPS, _LEAST, _MOST = 4, 20, 20_000
 # The distance must become smaller than this part of that of the worst lag.
 _DEEP = 0.95
+_FEW = "there are too few rows of tracks"
 
 
 @dataclass(frozen=True)
@@ -88,13 +89,17 @@ def fitted_lag(tracks: Positions, truth: Positions, cutoff: float, timing: Timin
     steadily in the same direction a lag and an offset of position are one and the same.
     """
     interval = usual_interval(tracks)
-    if len(tracks) < _LEAST or math.isnan(interval):
-        return TrackLag(0.0, math.nan, math.nan, "there are too few rows of tracks")
-    span = float(truth.time.max() - truth.time.min()) if len(truth) else 0.0
-    window = min(_INTERVALS * interval, _SHARE * span)
+    if not len(truth) or math.isnan(interval):
+        return TrackLag(0.0, math.nan, math.nan, _FEW)
+    begin, end = float(truth.time.min()), float(truth.time.max())
+    window = min(_INTERVALS * interval, _SHARE * (end - begin))
     count = math.ceil(window / interval * _STEPS)
     lags = np.arange(-count, count + 1) * (interval / _STEPS)
-    rows = tracks.where(np.arange(0, len(tracks), -(-len(tracks) // _MOST)))
+    # Rows at whose times the truth may be known, at every lag that is tried.
+    inner = np.flatnonzero((tracks.time >= begin + lags[-1]) & (tracks.time <= end + lags[0]))
+    rows = tracks.where(inner[:: max(1, len(inner) // _MOST)])
+    if len(rows) < _LEAST:
+        return TrackLag(0.0, math.nan, math.nan, _FEW)
     gap = timing.truth_gap(tracks, truth)
     tried = np.array([_nearest(rows, truth, lag, gap, cutoff) for lag in lags])
     used: NDArray[np.bool_] = np.asarray((tried < cutoff).any(axis=0))
@@ -102,18 +107,21 @@ def fitted_lag(tracks: Positions, truth: Positions, cutoff: float, timing: Timin
         return TrackLag(0.0, math.nan, math.nan, "too few rows come near the truth at any lag")
     sizes = np.sqrt((tried[:, used] ** 2).mean(axis=1))
     before, best = float(sizes[count]), int(np.argmin(sizes))
-    if best in (0, len(lags) - 1):
-        unknown = f"no lag within ±{window:.3g} s fits best"
-        return TrackLag(0.0, before, before, unknown)
     if sizes[best] > _DEEP * sizes.max():
         return TrackLag(0.0, before, before, "the objects move too slowly to tell it")
+    if best in (0, len(lags) - 1):
+        return TrackLag(0.0, before, before, f"no lag within ±{window:.3g} s fits best")
     rows = rows.where(used)
 
     def size(lag: float) -> float:
         return math.sqrt(float((_nearest(rows, truth, lag, gap, cutoff) ** 2).mean()))
 
     lag = _refined(size, float(lags[best - 1]), float(lags[best + 1]), interval)
-    return TrackLag(lag, size(lag), before)
+    return min((TrackLag(each, size(each), before) for each in (lag, float(lags[best]))), key=_size)
+
+
+def _size(found: TrackLag) -> float:
+    return found.distance
 
 
 def _refined(size: Callable[[float], float], low: float, high: float, interval: float) -> float:

@@ -90,7 +90,8 @@ def hota(scene: Scene, pairs: ClosePairs, cutoff: float) -> Hota:
     lives = np.bincount(scene.tracks.id, minlength=tracks)[both % tracks]
     possible = np.bincount(which, _shares(near, similarity), minlength=len(both))
     alignment = possible / (objects + lives - possible)
-    chosen = best_assignment(near.true_row, near.track_row, alignment[which] * similarity)
+    worth = alignment[which] * similarity
+    chosen = best_assignment(near.true_row, near.track_row, worth, near.instant)
     similarity, which = similarity[chosen], which[chosen]
     curves = np.array(
         [_at(each, similarity, which, objects, lives, n_true + n_tracks) for each in THRESHOLDS]

@@ -20,7 +20,7 @@ from fuzzytrack.scoring.scene import Scene
 from fuzzytrack.scoring.siap import nearest_objects, siap
 from fuzzytrack.scoring.track_life import track_life
 
-__all__ = ["METRICS", "Metric", "Settings", "curves_of", "metrics_of", "of_kind"]
+__all__ = ["METRICS", "Metric", "Settings", "evaluate", "of_kind"]
 
 
 @dataclass(frozen=True)
@@ -135,8 +135,8 @@ class Settings:
         return max(self.cutoff, self.within, self.match)
 
 
-def metrics_of(scene: Scene, settings: Settings) -> dict[str, float]:
-    """Every metric of a scene.
+def evaluate(scene: Scene, settings: Settings) -> tuple[dict[str, float], dict[str, Array]]:
+    """Every metric of a scene, and what is shown of it over time.
 
     Parameters
     ----------
@@ -145,11 +145,15 @@ def metrics_of(scene: Scene, settings: Settings) -> dict[str, float]:
 
     Returns
     -------
-    dict of str to float
+    metrics : dict of str to float
         By the names of `METRICS`; those that are over time are means over the instants.
+    curves : dict of str to ndarray, shape (n_instants,)
+        Those of OSPA, OSPA(2) and GOSPA by the same names; ``n_true``, ``n_tracks`` and
+        ``n_matched``, the pairs nearer than `Settings.within`.
     """
     pairs = ClosePairs.of(scene, settings.reach)
-    values = {name: float(curve.mean()) for name, curve in _sets(scene, pairs, settings).items()}
+    curves = _sets(scene, pairs, settings)
+    values = {name: float(curve.mean()) for name, curve in curves.items()}
     held = Correspondences.of(scene, pairs, settings.within)
     assert settings.match is not None
     matched = held
@@ -163,7 +167,11 @@ def metrics_of(scene: Scene, settings: Settings) -> dict[str, float]:
     values |= {**vars(clear), "switches": values["switches"], "identity_switches": clear.switches}
     values |= vars(idf1(scene, pairs, settings.match))
     values |= {k: v for k, v in vars(hota(scene, pairs, settings.cutoff)).items() if k in METRICS}
-    return {name: float(values[name]) for name in METRICS}
+    curves["n_true"] = scene.n_true.astype(float)
+    curves["n_tracks"] = scene.n_tracks.astype(float)
+    numbers = np.bincount(held.pairs.instant, minlength=len(scene.time))
+    curves["n_matched"] = numbers.astype(float)
+    return {name: float(values[name]) for name in METRICS}, curves
 
 
 def _sets(scene: Scene, pairs: ClosePairs, settings: Settings) -> dict[str, Array]:
@@ -176,26 +184,6 @@ def _sets(scene: Scene, pairs: ClosePairs, settings: Settings) -> dict[str, Arra
         found[name] = parts.pop("distance")
         found |= {f"{name}_{part}": curve for part, curve in parts.items()}
     return found
-
-
-def curves_of(scene: Scene, settings: Settings) -> dict[str, Array]:
-    """What a picture shows over time: distances between sets, and how many objects there are.
-
-    Returns
-    -------
-    dict of str to ndarray, shape (n_instants,)
-        Those of OSPA, OSPA(2) and GOSPA by the names of `METRICS`; ``n_true``, ``n_tracks`` and
-        ``n_matched``, the pairs nearer than `Settings.within`.
-    """
-    pairs = ClosePairs.of(scene, settings.reach)
-    held = Correspondences.of(scene, pairs, settings.within)
-    count = len(scene.time)
-    return {
-        **_sets(scene, pairs, settings),
-        "n_true": scene.n_true.astype(float),
-        "n_tracks": scene.n_tracks.astype(float),
-        "n_matched": np.bincount(held.pairs.instant, minlength=count).astype(float),
-    }
 
 
 def of_kind(scene: Scene, kind: int) -> Scene:

@@ -53,7 +53,8 @@ class SetAssignment:
     def of(cls, scene: Scene, pairs: ClosePairs, cutoff: float, order: float) -> SetAssignment:
         """Assign tracks to true objects; `pairs` must reach as far as the cut-off."""
         power = pairs.distance**order
-        chosen = best_assignment(pairs.true_row, pairs.track_row, cutoff**order - power)
+        gain = cutoff**order - power
+        chosen = best_assignment(pairs.true_row, pairs.track_row, gain, pairs.instant)
         count, where = len(scene.time), pairs.instant[chosen]
         sums = np.bincount(where, power[chosen], minlength=count).astype(np.float64)
         assigned = np.bincount(where, minlength=count).astype(np.int64)

@@ -15,6 +15,9 @@ __all__ = ["ospa2"]
 
 Integers = NDArray[np.int64]
 
+# Pairs of identities times instants that are looked at together.
+_CELLS = 4_000_000
+
 
 def ospa2(scene: Scene, pairs: ClosePairs, cutoff: float, order: float, window: int) -> Ospa:
     """OSPA of tracks: a switch of identity costs as long as it is in the window.
@@ -64,7 +67,7 @@ def ospa2(scene: Scene, pairs: ClosePairs, cutoff: float, order: float, window: 
     together = _together(scene, true_key, track_key, left, right, window)
     union = true_rows[left] + track_rows[right] - together
     mean = gains / union
-    chosen = best_assignment(left, right, mean)
+    chosen = best_assignment(left, right, mean, end[first])
     return _distance(
         count,
         np.bincount(true_key // max(1, len(scene.truth.names)), minlength=count),
@@ -101,32 +104,30 @@ def _together(
     objects, tracks = len(scene.truth.names), len(scene.tracks.names)
     end = true_key[left] // max(1, objects)
     pair = (true_key[left] % max(1, objects)) * max(1, tracks) + track_key[right] % max(1, tracks)
-    # Instants at which both exist, of the pairs that matter.
+    # Of each pair of identities that matters: in how many instants so far both exist.
     wanted, which = np.unique(pair, return_inverse=True)
-    true_at = _Instants(scene.truth)
-    track_at = _Instants(scene.tracks)
-    total = np.zeros(len(pair), dtype=np.int64)
+    count = len(scene.time)
+    there, here = _presence(scene.truth, count), _presence(scene.tracks, count)
+    total = np.empty(len(pair), dtype=np.int64)
     order = np.argsort(which, kind="stable")
-    bounds = np.searchsorted(which[order], np.arange(len(wanted) + 1))
-    for number, code in enumerate(wanted.tolist()):
-        one = true_at.of(code // max(1, tracks))
-        common = np.intersect1d(one, track_at.of(code % max(1, tracks)), assume_unique=True)
-        mine = order[bounds[number] : bounds[number + 1]]
-        last = np.searchsorted(common, end[mine], side="right")
-        total[mine] = last - np.searchsorted(common, end[mine] - window, side="right")
+    size = max(1, _CELLS // count)
+    for begin in range(0, len(wanted), size):
+        codes = wanted[begin : begin + size]
+        both = there[codes // max(1, tracks)] & here[codes % max(1, tracks)]
+        so_far = np.zeros((len(codes), count + 1), dtype=np.int64)
+        np.cumsum(both, axis=1, out=so_far[:, 1:])
+        low, high = np.searchsorted(which[order], [begin, begin + len(codes)])
+        mine = order[low:high]
+        row, last = which[mine] - begin, end[mine] + 1
+        total[mine] = so_far[row, last] - so_far[row, np.maximum(last - window, 0)]
     return total
 
 
-class _Instants:
-    """Instants of each object."""
-
-    def __init__(self, rows: ObjectRows) -> None:
-        order = np.argsort(rows.id, kind="stable")
-        self.instant = rows.instant[order]
-        self.bounds = np.searchsorted(rows.id[order], np.arange(len(rows.names) + 1))
-
-    def of(self, id: int) -> Integers:
-        return self.instant[self.bounds[id] : self.bounds[id + 1]]
+def _presence(rows: ObjectRows, count: int) -> NDArray[np.bool_]:
+    """Whether each object exists at each instant, shape (n_objects, n_instants)."""
+    found = np.zeros((len(rows.names), count), dtype=np.bool_)
+    found[rows.id, rows.instant] = True
+    return found
 
 
 def _distance(

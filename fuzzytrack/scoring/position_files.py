@@ -22,6 +22,7 @@ from fuzzytrack.io.plot_files import PlotFiles, opened
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import recording_files
 from fuzzytrack.io.table import Kind, Table
+from fuzzytrack.plurals import counted
 from fuzzytrack.scoring.positions import KINDS, Positions
 
 __all__ = ["TableOptions", "read_positions", "read_times"]
@@ -104,7 +105,7 @@ def read_positions(
     there, _ = _read(second, "truth", tentative=True)
     notes = [f"{name}: {_sentence(each)}" for name, each in (("tracks", first), ("truth", second))]
     if left_out:
-        notes.append(f"tracks: {left_out} rows of tentative tracks left out")
+        notes.append(f"tracks: {counted(left_out, 'row')} of tentative tracks left out")
     return (given, there), tuple(notes)
 
 

@@ -131,13 +131,13 @@ class Positions:
         ValueError
             As `make`.
         """
+        value = getattr(value, "reports", value)
         if isinstance(value, cls):
             return cls.make(name, *(getattr(value, each.name) for each in fields(cls)))
         if isinstance(value, Mapping):
             return cls._of_mapping(value, name)
         if isinstance(value, tuple) and 3 <= len(value) <= len(fields(cls)):
             return cls.make(name, *value)
-        value = getattr(value, "reports", value)
         if all(hasattr(value, each) for each in ("time", "track_id", "position", "status")):
             shown = value.where(np.asarray(value.status) > 0)
             return cls.make(

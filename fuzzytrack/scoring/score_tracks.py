@@ -17,15 +17,15 @@ from fuzzytrack.plurals import counted
 from fuzzytrack.scoring.clock_lag import TrackLag, fitted_lag
 from fuzzytrack.scoring.close_pairs import ClosePairs
 from fuzzytrack.scoring.instants import Timing, added_at_ends, make_scene
-from fuzzytrack.scoring.metrics import Settings, curves_of, metrics_of, of_kind
+from fuzzytrack.scoring.metrics import Settings, evaluate, of_kind
 from fuzzytrack.scoring.positions import KINDS, Positions
 from fuzzytrack.scoring.scene import Scene
 from fuzzytrack.scoring.scores import GroupScores, Scores
 
 __all__ = ["Lag", "Lists", "score", "score_positions"]
 
-#: A lag of the clock of tracks (s), or whether it is fitted.
-Lag = float | Literal["auto"] | None
+#: A lag of the clock of tracks (s), or that of each group, or whether it is fitted.
+Lag = float | Mapping[str, float] | Literal["auto"] | None
 #: Which objects the truth lists.
 Lists = Literal["all", "moving"]
 
@@ -68,13 +68,13 @@ def score(
         The same for CLEAR MOT, IDF1 and SIAP; as `within` unless given.
     window : int
         Instants of a window of OSPA(2).
-    lag : float, "auto" or None
+    lag : float, mapping from groups to float, "auto" or None
         Time by which the clock of the tracks is late against that of the truth (s); "auto" fits it
         for each group.
     scans : array_like, or mapping from groups to array_like, optional
         Instants at which tracks and truth are compared (s): those of all scans, the ones without a
-        track included. Unless given, the times of the rows of tracks, with more of them where they
-        are missing; or a grid, where tracks have times of their own.
+        track included; of a ScanResult they are known. Otherwise the times of the rows of tracks,
+        with more of them where they are missing; or a grid, where tracks have times of their own.
     step : float, optional
         Time between the instants of such a grid (s).
     max_gap : float, optional
@@ -116,6 +116,9 @@ def score(
     else:
         given, known = Positions.of(tracks, "tracks"), Positions.of(truth, "truth")
         notes = ()
+    if scans is None and hasattr(tracks, "reports"):
+        # What a scan tracker found, with the times of all scans.
+        scans = tracks.times
     timing = Timing(step=step, max_gap=max_gap)
     return score_positions(
         given,
@@ -150,8 +153,6 @@ def score_positions(
             f"tracks and truth: positions have {tracks.n_axes} and {truth.n_axes} axes; expected "
             "equally many"
         )
-    if lag is not None and lag != "auto":
-        timing = replace(timing, lag=_number_of_seconds(lag))
     if moving_above is not None:
         tracks = _with_kinds(tracks, moving_above)
     elif truth_lists == "moving" and tracks.kind is None:
@@ -164,13 +165,20 @@ def score_positions(
     for group in groups:
         mine = tracks if group is None else tracks.of_group(group)
         true = truth if group is None or truth.group is None else truth.of_group(group)
-        when = replace(timing, times=_times_of(scans, group))
+        when = replace(timing, times=_times_of(scans, group), lag=_lag_of(lag, group))
         one = _scored(mine, true, settings, when, lag == "auto", truth_lists)
         found.append(replace(one, name="" if group is None else str(group)))
     return Scores(tuple(found), settings, (*notes, *_notes(found, timing, tracks, truth)))
 
 
-def _number_of_seconds(lag: float | str) -> float:
+def _lag_of(lag: Lag, group: object) -> float:
+    """Lag of a group (s); 0 where it is fitted, or there is none."""
+    if isinstance(lag, Mapping):
+        if str(group) not in lag:
+            raise ValueError(f"lag: has no group {str(group)!r}; expected a lag of every group")
+        lag = lag[str(group)]
+    if lag is None or lag == "auto":
+        return 0.0
     if isinstance(lag, str | bool) or not math.isfinite(lag):
         raise ValueError(f"lag: must be a finite number of seconds, 'auto' or None, got {lag!r}")
     return float(lag)
@@ -179,7 +187,7 @@ def _number_of_seconds(lag: float | str) -> float:
 def _times_of(scans: ArrayLike | Mapping[Any, ArrayLike] | None, group: object) -> Array | None:
     if isinstance(scans, Mapping):
         if group not in scans:
-            raise ValueError(f"scans: has no group {group!r}; expected times of every group")
+            raise ValueError(f"scans: has no group {str(group)!r}; expected times of every group")
         scans = scans[group]
     return None if scans is None else np.asarray(scans, dtype=np.float64)
 
@@ -236,20 +244,20 @@ def _scored(
         timing = replace(timing, lag=fitted.lag)
     whole = make_scene(tracks, truth, timing)
     scene = _listed(whole, settings.cutoff) if truth_lists == "moving" else whole
-    metrics = metrics_of(scene, settings)
+    metrics, curves = evaluate(scene, settings)
     if scene is not whole:
-        every = metrics_of(whole, settings)
+        every, _ = evaluate(whole, settings)
         metrics |= {name: every[name] for name in metrics if name.startswith(_FALSE)}
     by_kind = {}
     if whole.tracks.kind is not None:
         seen = [kind for kind in (1, 2, 0) if kind in whole.tracks.kind]
-        by_kind = {KINDS[kind]: metrics_of(of_kind(whole, kind), settings) for kind in seen}
+        by_kind = {KINDS[kind]: evaluate(of_kind(whole, kind), settings)[0] for kind in seen}
     return GroupScores(
         name="",
         metrics=metrics,
         by_kind=by_kind,
         time=scene.time,
-        curves=curves_of(scene, settings),
+        curves=curves,
         objects=len(np.unique(scene.truth.id)),
         tracks=len(np.unique(scene.tracks.id)),
         lag=timing.lag,

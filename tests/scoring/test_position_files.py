@@ -1,0 +1,149 @@
+"""Tables of tracks and of the truth, as they are found."""
+
+import numpy as np
+import pytest
+
+import fuzzytrack as ft
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.formats import write_table
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.scoring.position_files import TableOptions, read_positions, read_times
+
+
+@pytest.fixture
+def write(tmp_path):
+    def table(text, name="tracks.csv"):
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return table
+
+
+TRACKS = """\
+t,track_id,x,y,vx,vy,kind,status
+0,1,0,0,1,2,moving,confirmed
+1,1,1,2,1,2,static,coasting
+1,2,9,9,0,0,undecided,tentative
+"""
+TRUTH = "t,id,x,y\n0,a,0,0\n1,a,1,2\n"
+
+
+def test_columns_are_found(write):
+    (tracks, truth), notes = read_positions(write(TRACKS), write(TRUTH, "truth.csv"))
+    assert tracks.id.tolist() == ["1", "1"]
+    assert tracks.velocity.tolist() == [[1, 2], [1, 2]]
+    assert tracks.kind.tolist() == [1, 2]
+    assert truth.velocity is None
+    assert truth.position.tolist() == [[0, 0], [1, 2]]
+    assert notes == (
+        "tracks: time t; id track_id; position x, y; kind kind; status status; velocity vx, vy",
+        "truth: time t; id id; position x, y",
+        "tracks: 1 row of tentative tracks left out",
+    )
+
+
+def test_tentative_tracks_on_request(write):
+    (tracks, _), _ = read_positions(
+        write(TRACKS), write(TRUTH, "truth.csv"), TableOptions(tentative=True)
+    )
+    assert tracks.id.tolist() == ["1", "1", "2"]
+
+
+def test_north_and_east(write):
+    files = (
+        write("scenario,t_s,track_id,north_m,east_m\n2,1.5,7,10,20\n4,1.5,7,30,40\n"),
+        write("scenario,target_id,t_s,north_m,east_m\n2,1,1.5,11,20\n4,1,1.5,31,40\n", "truth.csv"),
+    )
+    (tracks, truth), _ = read_positions(*files, TableOptions(group="scenario"))
+    assert tracks.position.tolist() == [[10, 20], [30, 40]]
+    assert tracks.group.tolist() == ["2", "4"]
+    assert truth.group.tolist() == ["2", "4"]
+
+
+def test_the_truth_has_other_columns(write):
+    tracks = write("t,track_id,px,py\n0,1,3,4\n")
+    truth = write("when,name,a,b,vx\n0,z,5,6,0\n", "truth.csv")
+    said = TableOptions(reading=Reading.of(axes=("px", "py")))
+    of_truth = TableOptions(reading=Reading.of(time="when", id="name", axes=("a", "b")))
+    (found, there), _ = read_positions(tracks, truth, said, of_truth)
+    assert found.position.tolist() == [[3, 4]]
+    assert there.position.tolist() == [[5, 6]]
+    assert there.id.tolist() == ["z"]
+
+
+def test_dates_count_from_the_same_beginning(write):
+    tracks = write("time,track_id,x,y\n2024-05-01T10:00:05Z,1,5,0\n2024-05-01T10:00:06Z,1,6,0\n")
+    truth = write("time,id,x,y\n2024-05-01T10:00:00Z,1,0,0\n2024-05-01T10:00:10Z,1,10,0\n", "t.csv")
+    (found, there), _ = read_positions(tracks, truth)
+    assert (there.time - found.time[0]).tolist() == [-5, 5]
+    assert ft.score(tracks, truth)["rmse"] == pytest.approx(0)
+
+
+def test_seconds_of_an_epoch_count_from_the_same_beginning(write):
+    tracks = write("t,track_id,x,y\n1620114892.5,1,5,0\n1620114893.5,1,6,0\n")
+    truth = write("t,id,x,y\n1620114887.5,1,0,0\n1620114897.5,1,10,0\n", "truth.csv")
+    assert ft.score(tracks, truth)["rmse"] == pytest.approx(0)
+
+
+def test_latitudes_in_the_frame_of_the_tracks(write):
+    pytest.importorskip("pymap3d")
+    header = "t,{},lat,lon\n"
+    rows = [(k, 63.44 + 1e-4 * k, 10.4 + 2e-4 * k) for k in range(5)]
+    lines = "".join(f"{k},1,{lat},{lon}\n" for k, lat, lon in rows)
+    tracks = write(header.format("track_id") + "".join(lines.splitlines(True)[1:]))
+    truth = write(header.format("id") + lines, "truth.csv")
+    said = TableOptions(reading=Reading.of(geodetic=("lat", "lon")))
+    (found, there), _ = read_positions(tracks, truth, said)
+    assert found.position == pytest.approx(there.position[1:], abs=1e-6)
+    assert np.hypot(*np.diff(found.position, axis=0).T) == pytest.approx(15.0, abs=0.1)
+
+
+def test_parquet(tmp_path):
+    pytest.importorskip("pyarrow")
+    tracks, truth = tmp_path / "tracks.parquet", tmp_path / "truth.parquet"
+    t = np.arange(4.0)
+    write_table(tracks, {"t": t, "track_id": ["1"] * 4, "x": t, "y": t, "kind": ["moving"] * 4})
+    write_table(truth, {"t": t, "id": ["a"] * 4, "x": t, "y": t})
+    assert ft.score(tracks, truth)["mota"] == 1
+
+
+@pytest.mark.parametrize(
+    ("tracks", "truth", "message"),
+    [
+        ("t,x,y\n0,1,2\n", TRUTH, "no column of the identity of tracks; there are t, x, y"),
+        ("t,id,lat,lon\n0,1,2,3\n", TRUTH, "no columns x, y; `geodetic`=lat,lon takes"),
+        ("t,id,x,y,kind\n0,1,2,3,idle\n", TRUTH, "column kind: 'idle'; expected undecided, moving"),
+        ("t,id,x,y\n0,1,2,oops\n", TRUTH, "row 2, column y: 'oops'; expected a finite number"),
+        ("t,id,x,y\n0,1,2,3\n", "t,id,x,y\n2024-05-01T00:00:00,1,2,3\n", "of different kinds"),
+        ("t,id,x,y\n0,1,2,3\n0,1,2,4\n", TRUTH, "tracks: 1 has two positions at time 0"),
+        ("t,id,x,y\n0,1,2,3\n", "t,id\n0,1\n", "truth.csv: no columns x, y"),
+    ],
+)
+def test_what_is_wrong_is_named(write, tracks, truth, message):
+    with pytest.raises(ValueError, match=message):
+        read_positions(write(tracks), write(truth, "truth.csv"))
+
+
+def test_options_that_do_not_fit(write):
+    files = (write(TRACKS), write(TRUTH, "truth.csv"))
+    for options, message in (
+        (TableOptions(group="sea"), "`group`: no column 'sea'"),
+        (TableOptions(kind="class"), "`kind`: no column 'class'"),
+        (TableOptions(velocity=("vx",)), "velocity: 1 given; expected 2, one for each axis"),
+        (TableOptions(reading=Reading.of(polar=("x", "y"))), "holds polar positions; expected x"),
+    ):
+        with pytest.raises(DataError, match=message):
+            read_positions(*files, options)
+
+
+def test_times_of_scans(write):
+    tracks = write("run,t,track_id,x,y\na,2,1,0,0\nb,3,1,0,0\n")
+    scans = write("run,t,own_x\na,1,0\na,2,0\nb,3,0\n", "scans.csv")
+    found = read_times(scans, tracks, TableOptions(group="run"))
+    assert {name: times.tolist() for name, times in found.items()} == {"a": [1, 2], "b": [3]}
+    assert read_times(scans, tracks).tolist() == [1, 2, 3]
+    other = write("when\n5\n", "other.csv")
+    assert read_times(other, tracks, time="when").tolist() == [5]
+    with pytest.raises(DataError, match="`time`: no column 't'"):
+        read_times(other, tracks)
