@@ -38,8 +38,8 @@ _SINGLE = 20_000
 _LINES, _ROWS = 4000, 300_000
 # Tracks up to which those with a free place at their end are named.
 _NAMED = 120
-# Tracks up to which marks have their full size.
-_FEW = 20
+# Tracks up to which marks have their full size, and up to which starts and ends are marked.
+_FEW, _MARKED = 20, 200
 # Width of the picture in inches.
 _WIDTH = 6.8
 
@@ -86,8 +86,9 @@ def plot_scan(
 
     Notes
     -----
-    Up to 120 tracks are named at their ends where the name covers nothing. More than 20,000 plots
-    are drawn by their density; so are more than 4,000 tracks, or those with more than 300,000 rows.
+    Up to 120 tracks are named at their ends where the name covers nothing, and up to 200 have marks
+    at both ends. More than 20,000 plots are drawn by their density. So are, without the plots, more
+    than 4,000 tracks, or tracks with more than 300,000 rows.
     """
     tracks = ReportedTracks.of(result)
     if not static:
@@ -143,9 +144,12 @@ class _Picture:
 
     def draw_plots(self, plots: Array) -> None:
         """Plots one by one and faint, or by their density."""
+        if not self.with_lines:
+            # They would be covered by the density of the tracks.
+            return
         if len(plots) > _SINGLE:
             x, y = self.plane.shown(plots)
-            draw_density(self.ax, x, y, 1.0, behind=self.with_lines)
+            draw_density(self.ax, x, y, 1.0, behind=True)
         elif len(plots):
             style = {**STYLES["plots"], "marker": "o", "markeredgewidth": 0.0}
             style |= {"markerfacecolor": shared.GRAY, "alpha": 0.75 if len(plots) < 500 else 0.4}
@@ -228,15 +232,16 @@ class _Picture:
         small = {} if len(tracks) <= _FEW else {"markersize": 3.2, "markeredgewidth": 0.8}
         ended = moving & ~lives
         for name, rows in (("start", tracks.first[moving]), ("end", tracks.last[ended])):
-            if len(rows):
+            if len(rows) and len(tracks) <= _MARKED:
                 self._draw_marks(rows, label=name, **{**STYLES[name], "markersize": 4.5, **small})
         here = tracks.last[moving & lives]
         if len(here):
             kept = (moving & lives).tolist()
             face = [color for color, each in zip(self.colors, kept, strict=True) if each]
             x, y = self.plane.shown(tracks.reports.position[here])
-            size = 26.0 if len(tracks) <= _FEW else 12.0
-            self.ax.scatter(x, y, s=size, c=face, zorder=3.2, edgecolors="white")
+            size = 26.0 if len(tracks) <= _FEW else 12.0 if len(tracks) <= _MARKED else 4.0
+            edge = "white" if len(tracks) <= _MARKED else "none"
+            self.ax.scatter(x, y, s=size, c=face, zorder=3.2, edgecolors=edge)
             look: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": shared.INK}
             self.ax.plot([], [], label="in the last scan", markersize=size**0.5, **look)
         if (~moving).any():

@@ -100,10 +100,16 @@ function fillTable(rows) {
     put(cells[1], KINDS[run.kind[row]]);
     put(cells[2], STATUSES[run.status[row]]);
     put(cells[3], run.speed(row).toFixed(1));
-    put(cells[4], run.kind[row] === STATIC ? "\u2013" : `${Math.round(run.course(row)) % 360}\u00b0`);
+    put(cells[4], courseText(row));
   }
   put(at("more"), rows.length > SHOWN ? `and ${rows.length - SHOWN} more` :
     rows.length ? "" : "No track in this scan.");
+}
+
+// What stands still has no course.
+function courseText(row) {
+  if (run.kind[row] === STATIC || run.speed(row) < 0.05) return "\u2013";
+  return `${Math.round(run.course(row)) % 360}\u00b0`;
 }
 
 function put(element, text) {
@@ -168,7 +174,7 @@ function factsOf(track) {
     [up, `${(run.place[2 * row + 1] + origin[1]).toFixed(1)} m`],
     ["standard deviation", `${run.deviation[row].toFixed(1)} m`],
     ["speed", `${run.speed(row).toFixed(2)} m/s`],
-    ["course", `${run.course(row).toFixed(0)}\u00b0`],
+    ["course", courseText(row)],
     ["existence", chance > 100 ? "not known" : `${chance} %`],
     ["last plot", run.since[row] > 0 ? `${run.since[row].toFixed(1)} s before` : "in this scan"],
     life,

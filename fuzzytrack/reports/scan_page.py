@@ -107,7 +107,9 @@ def _facts(result: Any, shown: Shown) -> str:
     reports = shown.reports
     last = np.unique(reports.track_id[::-1], return_index=True)[1]
     kinds = np.bincount(reports.kind[::-1][last], minlength=len(KINDS)).tolist()
-    tracks = ", ".join(f"{n:,} {kind}" for n, kind in zip(kinds, KINDS, strict=True) if n)
+    # Moving ones first.
+    order = sorted(range(len(KINDS)), key=lambda kind: (kind == 0, kind))
+    tracks = ", ".join(f"{kinds[k]:,} {KINDS[k]}" for k in order if kinds[k])
     facts = [
         counted(len(shown.times), "scan"),
         f"tracks: {tracks}" if tracks else "no track",

@@ -301,7 +301,8 @@ class RadarMap {
     pen.textAlign = "left";
     const rank = (row) => (this.run.track[row] === state.chosen ? 0 :
       this.run.kind[row] === MOVING ? 1 : this.run.kind[row] === STATIC ? 3 : 2);
-    const inside = [];
+    const inside = [], [ownX, ownY] = this.ownAt(state);
+    taken.take([ownX - 6, ownY - 7, ownX + 6, ownY + 5]);
     for (const row of rows) {
       const [x, y] = this.pixelsOf(row);
       if (!(x > 0 && y > 0 && x < width && y < height)) continue;

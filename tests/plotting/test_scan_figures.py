@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from drawn_lines import lines
 from harbor import harbor, reports_of
-from matplotlib import pyplot as plt
 from matplotlib.collections import LineCollection, QuadMesh
 
 from fuzzytrack.plotting import plot_scan
@@ -167,11 +166,17 @@ def test_very_many_tracks_and_plots_are_counted_in_cells():
     many = TrackReports(
         0 * n, zeros, n + 1, place, place, np.ones((count, 4)), words, words, zeros, zeros, n
     )
-    figure, ax = plot_scan(many, [Scan(0.0, random.uniform(-1, 1, (20_001, 2)))])
+    _, ax = plot_scan(many, [Scan(0.0, random.uniform(-1, 1, (20_001, 2)))])
     assert ax.get_title() == "5,000 tracks, not drawn one by one"
     counted = [c for c in ax.collections if isinstance(c, QuadMesh)]
-    assert [int(mesh.get_array().sum()) for mesh in counted] == [20_001, count]
-    plt.close(figure)
+    assert [int(mesh.get_array().sum()) for mesh in counted] == [count]
+    assert "plots" not in lines(ax)
+    _, ax = plot_scan(many.where(n < 3), [Scan(0.0, random.uniform(-1, 1, (20_001, 2)))])
+    counted = [c for c in ax.collections if isinstance(c, QuadMesh)]
+    assert [int(mesh.get_array().sum()) for mesh in counted] == [20_001]
+    assert "start" in lines(ax)
+    _, ax = plot_scan(many.where(n < 201))
+    assert "start" not in lines(ax)
 
 
 @pytest.mark.parametrize(
