@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         plot_surface,
         plot_track,
     )
+    from fuzzytrack.recordings.scanning import ScannedRecording, track_scans
     from fuzzytrack.recordings.tracking import TrackedRecording, track
     from fuzzytrack.scan.scanners import load_scanner, shipped_scanners
     from fuzzytrack.schedulers import FixedGains, FuzzyScheduler, GainScheduler
@@ -54,6 +55,7 @@ __all__ = [
     "PluginWarning",
     "RuleBase",
     "RuleBaseError",
+    "ScannedRecording",
     "ScannerError",
     "Scores",
     "TrackResult",
@@ -76,6 +78,7 @@ __all__ = [
     "shipped_rulebases",
     "shipped_scanners",
     "track",
+    "track_scans",
     "tune",
     "w_from_alpha_beta",
 ]
@@ -102,6 +105,7 @@ _HOMES = {
         "plot_surface",
         "plot_track",
     ),
+    "recordings.scanning": ("ScannedRecording", "track_scans"),
     "recordings.tracking": ("TrackedRecording", "track"),
     "scan.scanners": ("load_scanner", "shipped_scanners"),
     "schedulers": ("FixedGains", "FuzzyScheduler", "GainScheduler"),

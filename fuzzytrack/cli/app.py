@@ -25,6 +25,10 @@ COMMANDS = {
         "track:track",
         "Track the plots of a file, or of several files in their order.",
     ),
+    "scan": (
+        "scan:scan",
+        "Make tracks of plots without identities, scan by scan, as a radar gives them.",
+    ),
     "compare": ("compare:compare", "Compare trackers on recorded plots, with or without truth."),
     "score": (
         "score:score",

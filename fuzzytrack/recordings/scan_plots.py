@@ -25,7 +25,7 @@ from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_gathering import GatheringRules, ScanGathering
 from fuzzytrack.recordings.scan_list import ScanList, own_columns
 from fuzzytrack.recordings.scan_order import CountedOn, RowOrder
-from fuzzytrack.recordings.scan_rhythm import recognize_scans
+from fuzzytrack.recordings.scan_rhythm import antenna_of, recognize_scans
 from fuzzytrack.recordings.scan_rows import RowColumns, ScanRows, read_rows
 from fuzzytrack.reprs import summary
 from fuzzytrack.scan.scan import Scan
@@ -37,6 +37,8 @@ __all__ = ["ScanPlots", "scans_of"]
 _SCANS = ("scan", "scan_number", "scan_no", "scan_id", "sweep", "sweep_number", "frame")
 # Rows that show how the radar makes its scans.
 _FIRST = 5_000
+# Sectors of a turn: the tracks in one need the plots of its neighbors on both sides.
+_LEAST_SECTORS, _MOST_SECTORS = 4, 1024
 # Rules about single tracks, which plots without identities do not have.
 _OF_TRACKS = ("duplicates", "stale", "least_step", "max_gap", "max_coast")
 
@@ -59,6 +61,8 @@ class ScanPlots:
         All scans with their times, those without a plot included.
     lateness : float or None
         How late a plot may come (s); None if none may.
+    sectors : int or None
+        Sectors of a turn, if plots are tracked sector by sector behind the beam.
     findings : ScanFindings
         Counts and notes; it grows while scans are read.
     """
@@ -69,6 +73,7 @@ class ScanPlots:
     said: str = ""
     list: ScanList | None = None
     lateness: float | None = None
+    sectors: int | None = None
     findings: ScanFindings = field(default_factory=ScanFindings, compare=False)
 
     def __repr__(self) -> str:
@@ -86,6 +91,7 @@ class ScanPlots:
         own: tuple[str, ...] | None = None,
         scans: PathLike | None = None,
         lateness: float | None = None,
+        sectors: int | None = None,
     ) -> ScanPlots:
         """Find out what a recording holds, and how its plots are divided into scans.
 
@@ -111,6 +117,9 @@ class ScanPlots:
             Table of all scans, see `ScanList.read`; needs a column of scans.
         lateness : float, optional
             Plots that come up to so many seconds late are put in order, later ones left out.
+        sectors : int, optional
+            The antenna turns, and plots are tracked sector by sector behind it, so many a turn: at
+            least 4. A column or a list of scans is not used then.
 
         Raises
         ------
@@ -122,17 +131,20 @@ class ScanPlots:
             If a file cannot be read.
         """
         reading = _checked(reading or Reading(), period, lateness, scan)
+        _check_sectors(sectors, scan, scans)
         inputs = inputs_of(plots)
         files = PlotFiles.of(inputs, _without_identities(inputs[0], reading), identified=False)
         _check_plots(files.decoder)
-        columns = _columns(files, scan, group, own, searched=period is None, listed=scans)
+        columns = _columns(
+            files, scan, group, own, searched=(period or sectors) is None, listed=scans
+        )
         listed = None
         if scans is not None:
             if not columns.scan:
                 raise ValueError("scans: needs the column of the scans; name it with `scan`")
             listed = ScanList.read(scans, files.decoder, columns, own)
             columns = replace(columns, own=() if listed.has_own else columns.own)
-        made = cls(files, columns, ScanCut(), "", listed, lateness)
+        made = cls(files, columns, ScanCut(), "", listed, lateness, sectors)
         _check_own(made, own)
         cut, said = made._cut(period)
         made.findings.note(_notes(made))
@@ -167,37 +179,58 @@ class ScanPlots:
             If a file cannot be read.
         """
         gathering: ScanGathering | None = None
+        group = ""
+        for word, part in self.rows(progress, rows=rows):
+            if gathering is None or word != group:
+                if gathering is not None:
+                    yield from ((group, each) for each in gathering.finish())
+                group, gathering = word, self._gathering(word)
+            yield from ((group, each) for each in gathering.advance(part))
+        assert gathering is not None
+        yield from ((group, each) for each in gathering.finish())
+
+    def rows(
+        self, progress: Progress | None = None, *, rows: int | None = ROWS
+    ) -> Iterator[tuple[str, ScanRows]]:
+        """Read the plots in order of time, group by group, before they are divided into scans.
+
+        Parameters
+        ----------
+        progress, rows
+            As for `scans`.
+
+        Yields
+        ------
+        group : str
+        part : ScanRows
+
+        Raises
+        ------
+        DataError, OSError
+            As `scans`.
+        """
         # Plots of one scan need not be in order where a column says which they are.
         order = None
         if self.cut.rule != "column" or self.lateness is not None:
             order = RowOrder(self.lateness, self.files.decoder, self.findings)
-        group, done = "", set()
+        group: str | None = None
+        done: set[str] = set()
         for part in self._parts(rows, progress):
             word = str(part.groups[0])
-            if gathering is None or word != group:
-                if gathering is not None:
-                    yield from self._finished(group, order, gathering)
-                    done.add(group)
-                if word in done:
-                    raise DataError(
-                        f"{part.file}: row {part.rows[0]}, column {self.columns.group}: {word!r} "
-                        f"comes again after {group!r}; expected the rows of a group one after the "
-                        "other"
-                    )
-                group, gathering = word, self._gathering(word)
-            ready = part if order is None else order.advance(part)
-            yield from ((group, each) for each in gathering.advance(ready))
-        if gathering is None:
+            if group is not None and word != group:
+                yield from _held(group, order)
+                done.add(group)
+            if word in done:
+                raise DataError(
+                    f"{part.file}: row {part.rows[0]}, column {self.columns.group}: {word!r} "
+                    f"comes again after {group!r}; expected the rows of a group one after the "
+                    "other"
+                )
+            group = word
+            yield group, part if order is None else order.advance(part)
+        if group is None:
             raise no_rows(self.files.names[0])
-        yield from self._finished(group, order, gathering)
-
-    def _finished(
-        self, group: str, order: RowOrder | None, gathering: ScanGathering
-    ) -> Iterator[tuple[str, Scan]]:
-        rest = None if order is None else order.finish()
-        if rest is not None:
-            yield from ((group, each) for each in gathering.advance(rest))
-        yield from ((group, each) for each in gathering.finish())
+        yield from _held(group, order)
 
     def _gathering(self, group: str) -> ScanGathering:
         moved = self.list is not None and self.list.has_own and _is_relative(self.files.decoder)
@@ -227,16 +260,24 @@ class ScanPlots:
     # ---------------------------------------------------------------- recognition
 
     def _cut(self, period: float | None) -> tuple[ScanCut, str]:
-        if period is not None:
-            return ScanCut("period", float(period)), f"a scan every {period:.4g} s"
+        if period is not None and self.sectors is None:
+            return ScanCut("period", float(period)), f"one every {period:.4g} s"
         if self.columns.scan:
-            return ScanCut("column"), f"scans by column {self.columns.scan}"
+            return ScanCut("column"), f"by column {self.columns.scan}"
         first = replace(self, findings=ScanFindings())
         rows = next(first._parts(_FIRST, None), None)
         if rows is None:
             raise no_rows(self.files.names[0])
         head = rows.take(slice(0, _FIRST))
-        found, said = recognize_scans(head.take(np.argsort(head.time, kind="stable")))
+        head = head.take(np.argsort(head.time, kind="stable"))
+        if self.sectors is not None:
+            antenna = antenna_of(head, period, self.files.names[0])
+            latency = 2 * antenna.period / self.sectors
+            return ScanCut("period", antenna.period), (
+                f"{antenna.said}; {self.sectors} sectors a turn, reports up to {latency:.3g} s "
+                "behind the beam"
+            )
+        found, said = recognize_scans(head)
         if found is None:
             raise DataError(
                 f"{self.files.names[0]}: cannot tell which plots are of one scan: {said}; name the "
@@ -291,6 +332,18 @@ def _checked(
             "leave it out: the configuration has the noise of its radar"
         )
     return reading
+
+
+def _check_sectors(sectors: int | None, scan: str | None, scans: PathLike | None) -> None:
+    if sectors is None:
+        return
+    if not _LEAST_SECTORS <= sectors <= _MOST_SECTORS:
+        raise ValueError(
+            f"sectors: must be from {_LEAST_SECTORS} to {_MOST_SECTORS}, got {sectors}"
+        )
+    for name, value in (("scan", scan), ("scans", scans)):
+        if value is not None:
+            raise ValueError(f"{name} and sectors: sectors follow the antenna; give one of them")
 
 
 def _without_identities(first: Any, reading: Reading) -> Reading:
@@ -389,6 +442,13 @@ def _notes(plots: ScanPlots) -> Iterator[str]:
 
 
 # -------------------------------------------------------------------- pieces
+
+
+def _held(group: str, order: RowOrder | None) -> Iterator[tuple[str, ScanRows]]:
+    """Rows of a group that are still waited for."""
+    rest = None if order is None else order.finish()
+    if rest is not None:
+        yield group, rest
 
 
 def _one(pieces: Iterator[ScanRows]) -> Iterator[ScanRows]:

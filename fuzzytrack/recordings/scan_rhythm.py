@@ -14,15 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.errors import DataError
 from fuzzytrack.recordings.scan_cut import ScanCut
 from fuzzytrack.recordings.scan_rows import ScanRows
 
-__all__ = ["AntennaTurn", "recognize_scans", "turn_of_antenna"]
+__all__ = ["AntennaTurn", "antenna_of", "recognize_scans", "turn_of_antenna"]
 
 # Periods of antennas that are looked for (s), from fast ship radars to slow early warning.
 SHORTEST, LONGEST = 0.5, 60.0
-# Rows that are looked at by the bearings, and the fewest that say anything.
-_ROWS, _FEWEST = 2_000, 12
+# Rows whose bearings are looked at: fewer where more show nothing, since the period may change; and
+# the fewest that say anything.
+_ROWS, _FEWEST = (2_000, 400, 100), 12
 # Mean length of the directions from which on the bearings follow the antenna: of 12 independent
 # bearings and 10,000 periods, chance reaches .9 in about one of 1,000 recordings.
 _AGREE = 0.9
@@ -55,6 +57,12 @@ class AntennaTurn:
     start: float
     agreement: float
 
+    @property
+    def said(self) -> str:
+        """What was found, in words."""
+        sense = "clockwise" if self.clockwise else "counter-clockwise"
+        return f"the antenna turns {sense} in {self.period:.4g} s, by the bearings of the plots"
+
     def phase(self, time: Array | float) -> Array:
         """Bearing of the antenna (rad, not wrapped) at times (s)."""
         turned = 2 * math.pi * (np.asarray(time) - self.start) / self.period
@@ -86,9 +94,7 @@ def recognize_scans(rows: ScanRows) -> tuple[ScanCut | None, str]:
         return ScanCut("times", period), f"plots of equal time are a scan; one every {period:.4g} s"
     turn = turn_of_antenna(rows)
     if turn is not None:
-        sense = "clockwise" if turn.clockwise else "counter-clockwise"
-        said = f"the antenna turns {sense} in {turn.period:.4g} s, by the bearings of the plots"
-        return ScanCut("period", turn.period), said
+        return ScanCut("period", turn.period), turn.said
     return _by_gaps(rows.time, steps)
 
 
@@ -112,27 +118,66 @@ def _by_gaps(time: Array, steps: Array) -> tuple[ScanCut | None, str]:
     )
 
 
-def turn_of_antenna(rows: ScanRows) -> AntennaTurn | None:
+def antenna_of(rows: ScanRows, period: float | None, file: str) -> AntennaTurn:
+    """The turning of the antenna, which the plots must show.
+
+    Parameters
+    ----------
+    rows : ScanRows
+        In order of time.
+    period : float or None
+        About the time of a turn (s), if it is known.
+    file : str
+        Name of the file, for the message.
+
+    Raises
+    ------
+    DataError
+        If the bearings do not follow a turning antenna.
+    """
+    found = turn_of_antenna(rows, period)
+    if found is None:
+        about = "" if period is None else f" that turns in {period:.4g} s"
+        raise DataError(
+            f"{file}: the bearings of the plots do not follow an antenna{about}; `sectors` needs "
+            "plots with times and bearings of their own, about the position of the radar"
+        )
+    return found
+
+
+def turn_of_antenna(rows: ScanRows, period: float | None = None) -> AntennaTurn | None:
     """The turning of the antenna by the bearings of the plots; None if they show none.
 
     Parameters
     ----------
     rows : ScanRows
         In order of time; bearings are seen from their `own`, the origin where that is NaN.
+    period : float, optional
+        About the time of a turn (s): only times within 5 % of it are looked for.
     """
     own = np.where(np.isnan(rows.own), 0.0, rows.own)
     offset = rows.positions - own
-    good = np.flatnonzero(~np.isnan(offset).any(axis=1))[:_ROWS]
-    if len(good) < _FEWEST:
-        return None
+    good = np.flatnonzero(~np.isnan(offset).any(axis=1))
     time, bearing = rows.time[good], np.arctan2(offset[good, 0], offset[good, 1])
+    for few in dict.fromkeys(min(count, len(good)) for count in _ROWS):
+        found = _turn_of(time[:few], bearing[:few], period) if few >= _FEWEST else None
+        if found is not None:
+            return found
+    return None
+
+
+def _turn_of(time: Array, bearing: Array, period: float | None) -> AntennaTurn | None:
+    """The turning of the antenna by bearings (rad) at some times."""
     since = time - time[0]
     span = float(since[-1])
     if span < 2 * SHORTEST:
         return None
     # Four times as dense as frequencies can be told apart; a turn must be seen twice.
     lowest = max(1 / LONGEST, 2 / span)
-    frequencies = np.arange(lowest, 1 / SHORTEST, 1 / (4 * span))
+    highest = 1 / SHORTEST
+    if period is not None:
+        lowest, highest = 0.95 / period, 1.05 / period
+    frequencies = np.arange(lowest, highest, 1 / (4 * span))
     best = (0.0, 0.0)
     for sign in (1.0, -1.0):
         for first in range(0, len(frequencies), _BLOCK):

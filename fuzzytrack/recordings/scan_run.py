@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Any, Protocol
 
 import numpy as np
 
+from fuzzytrack.recordings.scan_rhythm import antenna_of
+from fuzzytrack.recordings.scan_rows import ScanRows
+from fuzzytrack.recordings.scan_sectors import Beam, SectorPass
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
 
-__all__ = ["ScanTotals", "ScannedScan", "Scanner", "Session", "run_scans"]
+__all__ = ["ScanTotals", "ScannedScan", "Scanner", "Session", "run_scans", "run_sectors"]
+
+
+# Rows and turns by which the beam of an antenna is found.
+_HELD, _TURNS = 50, 5
 
 
 class Session(Protocol):
@@ -152,3 +160,78 @@ def with_ids_after(reports: TrackReports, before: int) -> TrackReports:
     if not before:
         return reports
     return replace(reports, track_id=np.asarray(reports.track_id + before))
+
+
+def run_sectors(
+    scanner: Scanner,
+    plots: Iterable[tuple[str, ScanRows]],
+    sectors: int,
+    period: float,
+    *,
+    tentative: bool = False,
+) -> Iterator[ScannedScan]:
+    """Track the plots of a turning antenna sector by sector, each recording by itself.
+
+    Parameters
+    ----------
+    scanner : ScanTracker
+        The scan tracker; its scans are the turns.
+    plots : iterable of (str, ScanRows)
+        Rows in order of time, those of each group one after the other.
+    sectors : int
+        Sectors of a turn.
+    period : float
+        About the time of a turn (s).
+    tentative : bool
+        Whether tentative tracks are reported, too.
+
+    Yields
+    ------
+    ScannedScan
+        Of a sector, which counts as a scan: the plots that were used or start tracks, and reports
+        of the tracks that were due. Where the antenna points is found out by the plots of the first
+        turns, which are held until then.
+
+    Raises
+    ------
+    DataError
+        If the bearings of the first turns do not follow an antenna.
+    """
+    before = last = 0
+    for group, parts in groupby(plots, key=lambda pair: pair[0]):
+        before = last
+        rows = (part for _, part in parts)
+        done = _sectors_of(scanner, rows, sectors, period, tentative)
+        for number, (scan, reports) in enumerate(done):
+            reports = with_ids_after(reports, before)
+            reports = replace(reports, scan=np.full(len(reports), number, dtype=np.int64))
+            if len(reports):
+                last = max(last, int(reports.track_id.max()))
+            yield ScannedScan(group, scan, reports)
+
+
+def _sectors_of(
+    scanner: Scanner,
+    parts: Iterator[ScanRows],
+    sectors: int,
+    period: float,
+    tentative: bool,
+) -> Iterator[tuple[Scan, TrackReports]]:
+    """Sectors of one recording."""
+    held: list[ScanRows] = []
+    rows = 0
+    for part in parts:
+        held.append(part)
+        rows += len(part)
+        times = [each.time for each in held if len(each)]
+        if times and rows >= _HELD and times[-1][-1] - times[0][0] >= _TURNS * period:
+            break
+    first = ScanRows.joined(held)
+    if not len(first):
+        return
+    beam = Beam.of(antenna_of(first, period, first.file), float(first.time[0]))
+    sector_pass = SectorPass(scanner.start(), beam, sectors, tentative=tentative)
+    yield from sector_pass.advance(first)
+    for part in parts:
+        yield from sector_pass.advance(part)
+    yield from sector_pass.finish()

@@ -46,7 +46,7 @@ from fuzzytrack.scan.scan_parts import ScanParts
 from fuzzytrack.scan.scan_pass import PAIRS, scan_pass
 from fuzzytrack.scan.stages.pairs import MORE_EDGES
 from fuzzytrack.scan.stages.plots import BAD_COVARIANCE, BAD_POSITION, BAD_TIME, DONE, LARGEST
-from fuzzytrack.scan.track_columns import ID, STATUS
+from fuzzytrack.scan.track_columns import ID, PLOT, STATUS
 from fuzzytrack.scan.track_reports import TrackReports
 from fuzzytrack.scan.workspace import LASTING, Workspace, new_workspace, with_room
 
@@ -74,6 +74,7 @@ class ScanSession:
         self._pass = scan_pass(tracker, plain)
         self._work = new_workspace(tracker)
         self._rows: NDArray[np.int64] | None = None
+        self._waiting = np.empty(0, np.int64)
         self._work.clock[SCAN_TIME], self._work.clock[SCAN] = -np.inf, -1.0
 
     def __repr__(self) -> str:
@@ -173,6 +174,9 @@ class ScanSession:
                 self._restore(saved)
             raise
         work = self._work
+        if due is not None:
+            # The plots of the others are those of an earlier call.
+            work.tracks[self._waiting, PLOT] = -1
         n = int(work.counts[PLOTS])
         unused = np.zeros(len(scan.positions), np.bool_)
         rows = work.plots[:n, PLOT_ROW].astype(np.int64)
@@ -217,6 +221,7 @@ class ScanSession:
                 raise DataError(f"due: shape {mask.shape}; expected ({len(live)},)")
             self._work.due[: counts[ROWS] + n] = 0
             self._work.due[live] = mask
+            self._waiting = live[~mask]
         self._before = clock.copy()
         clock[LAST_TIME], clock[SCAN_TIME] = last, time
         clock[OWN_X], clock[OWN_Y] = scan.own

@@ -44,7 +44,7 @@ def test_scans_by_a_column():
 
 def test_a_column_with_a_usual_name_is_found():
     made = ScanPlots.of({"scan": THREE["n"], **THREE})
-    assert made.said == "scans by column scan"
+    assert made.said == "by column scan"
 
 
 def test_missing_numbers_are_scans_without_a_plot():
@@ -328,6 +328,9 @@ def test_pieces_of_any_size_give_the_same_scans(rows, how, seed):
     [
         ({}, {"period": 0}, "period: must be a number of seconds > 0, got 0"),
         ({}, {"period": 2, "scan": "n"}, "scan and period: both say"),
+        ({}, {"sectors": 3}, "sectors: must be from 4 to 1024, got 3"),
+        ({}, {"sectors": 8, "scan": "n"}, "scan and sectors: sectors follow the antenna"),
+        ({}, {"sectors": 8}, "the bearings of the plots do not follow an antenna; `sectors`"),
         ({}, {"lateness": -1}, "lateness: must be a number of seconds >= 0"),
         ({}, {"scan": "m"}, "`scan`: no column 'm'"),
         ({}, {"scan": "n", "group": "g"}, "`group`: no column 'g'"),

@@ -1,0 +1,270 @@
+"""The command that makes tracks of plots without identities."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.complaints import printable
+from fuzzytrack.cli.noise_words import noise_json, noise_sentence
+from fuzzytrack.cli.output import print_json, print_table, progress, say, say_notes
+from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
+from fuzzytrack.cli.pictures import check_picture, save_picture
+from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.recordings.scan_run import ScanTotals
+from fuzzytrack.recordings.scanning import DEFAULT_SCANNER, ScanJob
+
+__all__ = ["scan"]
+
+# Headings in the help.
+_SCANS, _TRACKS = "Scans", "Tracks"
+_HEADS = {
+    "scans": "scans",
+    "empty_scans": "empty",
+    "plots": "plots",
+    "tracks": "tracks",
+    "moving": "moving",
+    "static": "static",
+    "undecided": "undecided",
+}
+
+
+@reads_plots
+def scan(
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE|DIR...", help="Files of plots, a folder of them, or -."),
+    ],
+    reading: Reading,
+    config: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME|FILE.yaml",
+            help="Configuration of the scan tracker; NAME:role.number=value changes it.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = DEFAULT_SCANNER,
+    tracker: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME|FILE.yaml",
+            help="Tracker that updates the tracks, see `fuzzytrack trackers`. "
+            "[default: the configuration's]",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
+    tentative: Annotated[
+        bool,
+        typer.Option("--tentative", help="Report tentative tracks, too.", rich_help_panel=_TRACKS),
+    ] = False,
+    scan: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COL",
+            help="Column that says which scan a plot is of. [default: recognized]",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    period: Annotated[
+        str | None,
+        typer.Option(
+            metavar="S",
+            help="Time of a turn of the antenna, s. [default: recognized]",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    scans: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Table of all scans, those without a plot included: scan, time, own position.",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    group: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COL",
+            help="Column that says which of several recordings a row is of.",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    own: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COL,COL",
+            help="Columns of the position of a moving radar, in the frame of the plots.",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    lateness: Annotated[
+        str | None,
+        typer.Option(
+            metavar="S",
+            help="Put plots up to S seconds late in order, and leave out later ones. "
+            "[default: none may be late]",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    sectors: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Track sector by sector behind a turning antenna, N a turn. "
+            "[default: whole scans]",
+            rich_help_panel=_SCANS,
+        ),
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUT.csv|-",
+            help="Write the tracks (or .parquet; .geojson, .kml, .czml, .gpx; .ast for ASTERIX "
+            "CAT 062); - prints CSV.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
+    output_columns: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A,B,NEW=C",
+            help="Columns of -o, in this order, maybe under new names. [default: all]",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
+    quote_formulas: Annotated[
+        bool,
+        typer.Option(
+            "--quote-formulas",
+            help="In CSV, quote text that a spreadsheet would run.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = False,
+    plot: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE.png",
+            help="Draw the tracks over the plots (or .pdf, .svg…); of several groups the first.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
+    plugin: options.Plugins = None,
+    json: options.Json = False,
+) -> None:
+    """Make tracks of plots without identities, scan by scan, as a radar gives them.
+
+    Clutter, missed plots, births and deaths of tracks are the business of a configuration.
+    """
+    options.load_plugins(plugin)
+    if output == STANDARD_OUTPUT and json:
+        raise ValueError("--json: -o - writes the tracks to standard output; name a file")
+    if output_columns is not None and output is None:
+        raise ValueError("--output-columns: are those of -o; give it")
+    job = ScanJob.of(
+        files if len(files) > 1 else files[0],
+        config,
+        reading,
+        tracker=tracker,
+        output_columns=_names(output_columns, "--output-columns"),
+        scan=scan,
+        period=None if period is None else number_or(period, "--period", {}),
+        group=group,
+        own=_names(own, "--own"),
+        scans=scans,
+        lateness=None if lateness is None else number_or(lateness, "--lateness", {"0": 0.0}),
+        sectors=sectors,
+    )
+    totals = _run(job, output, plot, tentative=tentative, quote_formulas=quote_formulas)
+    if json:
+        file = files[0] if len(files) == 1 else list(files)
+        _print_json(job, totals, {"file": file}, {"output": output, "plot": plot})
+        return
+    with told_aside(output):
+        _print_table(job, totals)
+        for written in (output, plot):
+            if written not in (None, STANDARD_OUTPUT):
+                say(f"wrote {written}")
+
+
+def _names(text: str | None, option: str) -> tuple[str, ...] | None:
+    return None if text is None else tuple(options.names(text, option))
+
+
+def _run(
+    job: ScanJob, output: str | None, plot: str | None, *, tentative: bool, quote_formulas: bool
+) -> dict[str, ScanTotals]:
+    """Track, and write what is to be written; scans are kept for a picture only."""
+    with output_file(output) as place:
+        if place is not None:
+            job.check(place)
+        if plot is None:
+            with progress("tracking") as watch:
+                return job.write(
+                    place, tentative=tentative, progress=watch, quote_formulas=quote_formulas
+                )
+        check_picture(plot, job.inputs)
+        with progress("tracking") as watch:
+            found = job.whole(tentative=tentative, progress=watch)
+        if place is not None:
+            found.write(place, quote_formulas=quote_formulas)
+        save_picture(plot, found.plot, job.inputs)
+        return dict(found.totals_of)
+
+
+# -------------------------------------------------------------------- summary
+
+
+def _print_json(
+    job: ScanJob, totals: dict[str, ScanTotals], read: dict[str, Any], written: dict[str, Any]
+) -> None:
+    plots = job.plots
+    decoder = plots.files.decoder
+    groups = {name: each.summary for name, each in totals.items()} if plots.columns.group else None
+    found = {
+        "config": job.spec,
+        "time": decoder.columns.time,
+        "axes": job.table.axes,
+        "columns": asdict(decoder.columns),
+        **noise_json(decoder),
+        "scans_by": {"said": plots.said, **asdict(plots.cut), "column": plots.columns.scan or None},
+        **plots.findings.to_json_dict(),
+        "groups": groups,
+        "total": _total(totals).summary,
+    }
+    print_json({**read, **found, **written})
+
+
+def _total(totals: dict[str, ScanTotals]) -> ScanTotals:
+    total = ScanTotals()
+    for each in totals.values():
+        total.merge(each)
+    return total
+
+
+def _print_table(job: ScanJob, totals: dict[str, ScanTotals]) -> None:
+    plots = job.plots
+    decoder = plots.files.decoder
+    say(f"columns: {decoder.columns.sentence.replace('; no id: one track', '')}")
+    say(f"scans: {plots.said}")
+    say(f"configuration: {job.spec}")
+    say(f"sigma: {noise_sentence(decoder) or 'that of the configuration'}")
+    say_notes(plots.findings.notes)
+    rows = [[printable(name), *_row(each)] for name, each in totals.items()]
+    if len(rows) != 1:
+        rows += [[], [f"all {len(rows)}", *_row(_total(totals))]]
+    elif not plots.columns.group:
+        rows[0][0] = "all"
+    print_table([plots.columns.group, *_HEADS.values()], rows)
+    for fault in plots.findings.sentences():
+        say(fault)
+
+
+def _row(totals: ScanTotals) -> list[str]:
+    found = totals.summary
+    return [str(found[key]) for key in _HEADS]
