@@ -77,8 +77,10 @@ lowest: $(LOWEST)/.installed ## Run a short suite with the lowest versions that 
 constraints: $(VENV)/.installed-test $(VENV)/.installed-docs ## Record the versions that are installed, after a green run
 	$(BIN)/python -m pip --disable-pip-version-check freeze --exclude-editable > .ci/constraints.txt
 
-referee: $(VENV)/.installed-test ## Compare the engine with pyfuzzylite (GPL, installed for this only)
-	$(PIP) install --no-deps pyfuzzylite
+# Without what they need for images and tables of their own.
+referee: $(VENV)/.installed-test ## Compare engine, filters and metrics with independent programs (pyfuzzylite is GPL, installed for this only)
+	$(PIP) install --no-deps pyfuzzylite motmetrics trackeval xmltodict
+	$(PIP) install filterpy stonesoup
 	$(BIN)/python -m pytest $(PYTEST_ARGS) tests/referee
 
 lint: $(VENV)/.installed-test ## Check style, format and types
