@@ -69,9 +69,7 @@ def score(
     ] = "all",
     moving_above: Annotated[
         _Text,
-        _option(
-            _DISTANCES, "M/S", "Tracks without a kind that get on faster than this are moving."
-        ),
+        _option(_DISTANCES, "M/S", "Tracks that get from end to end faster than this are moving."),
     ] = None,
     lag: Annotated[
         str,

@@ -67,7 +67,7 @@ METRICS = {
     "false_per_minute": Metric("tracks", "false", "s/min"),
     "moving_false_per_minute": Metric("tracks", "moving false", "s/min"),
     "static_false_per_minute": Metric("tracks", "static false", "s/min"),
-    "duplicate_per_minute": Metric("tracks", "duplicates among false", "s/min"),
+    "redundant_per_minute": Metric("tracks", "redundant", "s/min"),
     "completeness": Metric("SIAP", "completeness", best="most"),
     "ambiguity": Metric("SIAP", "ambiguity", best="one"),
     "spuriousness": Metric("SIAP", "spuriousness"),
@@ -99,11 +99,12 @@ class Settings:
     ----------
     cutoff : float
         Cut-off c of OSPA, OSPA(2) and GOSPA, and distance at which the similarity of HOTA is 0 (m).
+        Tracks that are farther than this from every true object are false.
     order : float
         Order p of OSPA, OSPA(2) and GOSPA; at least 1.
     within : float
         Largest distance of a track from its true object (m), for the share tracked, the time to the
-        first match, breaks, switches and false tracks.
+        first match, breaks and switches.
     match : float, optional
         The same for CLEAR MOT, IDF1 and SIAP; as `within` unless given.
     window : int
@@ -161,7 +162,7 @@ def evaluate(scene: Scene, settings: Settings) -> tuple[dict[str, float], dict[s
         matched = Correspondences.of(scene, pairs, settings.match)
     clear = clear_mot(scene, matched)
     near = np.zeros(len(scene.tracks), dtype=np.bool_)
-    near[pairs.within(settings.within).track_row] = True
+    near[pairs.within(settings.cutoff).track_row] = True
     values |= vars(track_life(scene, held, near))
     values |= vars(siap(scene, nearest_objects(pairs, settings.match)))
     values |= {**vars(clear), "switches": values["switches"], "identity_switches": clear.switches}

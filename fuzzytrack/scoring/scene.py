@@ -91,9 +91,12 @@ class Scene:
 
     @property
     def durations(self) -> Array:
-        """Time until the next instant (s), shape (n_instants,); of the last one, the usual time."""
+        """Time until the next instant (s), shape (n_instants,).
+
+        Of the last one it is the usual time; a single instant lasts 1 s.
+        """
         steps = np.diff(self.time)
-        return np.append(steps, np.median(steps)) if len(steps) else np.zeros(len(self.time))
+        return np.append(steps, np.median(steps)) if len(steps) else np.ones(len(self.time))
 
     @property
     def n_true(self) -> Integers:

@@ -60,10 +60,11 @@ def score(
     truth : path, Positions, mapping or tuple
         True positions, in the same ways. They may be sampled at other times.
     cutoff, order : float
-        Cut-off c (m) and order p of OSPA, OSPA(2) and GOSPA; the similarity of HOTA is 0 at c.
+        Cut-off c (m) and order p of OSPA, OSPA(2) and GOSPA; the similarity of HOTA is 0 at c, and
+        tracks that are farther than c from every true object are false.
     within : float
         Largest distance of a track from its true object (m), for the share tracked, the time to the
-        first match, breaks, switches and false tracks.
+        first match, breaks and switches.
     match : float, optional
         The same for CLEAR MOT, IDF1 and SIAP; as `within` unless given.
     window : int
@@ -85,8 +86,8 @@ def score(
         undecided and farther than `cutoff` from every true object are left out of all metrics but
         false-track times.
     moving_above : float, optional
-        For tracks without a kind: they are moving if they get from their first row to their last
-        one faster than this (m/s), else static.
+        Tracks are moving if they get from their first row to their last one faster than this (m/s),
+        else static, whatever kind they have.
 
     Returns
     -------
@@ -211,8 +212,6 @@ def _with_kinds(tracks: Positions, above: float) -> Positions:
     """Tracks with a kind by the speed from their first row to their last one."""
     if not 0 < above < math.inf:
         raise ValueError(f"moving_above: must be a finite speed > 0 m/s, got {above:g}")
-    if tracks.kind is not None:
-        raise ValueError("moving_above: tracks have a kind already; leave out one of the two")
     keys: list[NDArray[Any]] = [np.unique(tracks.id, return_inverse=True)[1]]
     if tracks.group is not None:
         keys.append(np.unique(tracks.group, return_inverse=True)[1])
@@ -268,7 +267,7 @@ def _scored(
 
 
 # Metrics that count tracks of objects that the truth does not list.
-_FALSE = ("false_time", "false_per_minute", "moving_false", "static_false", "duplicate")
+_FALSE = ("false_time", "false_per_minute", "moving_false", "static_false")
 
 
 def _listed(scene: Scene, cutoff: float) -> Scene:

@@ -36,13 +36,13 @@ class TrackLife:
     rmse : float
         Root mean square of the distance of pairs (m).
     false_time : float
-        Sum of the times for which tracks have no true object (s).
+        Sum of the times for which tracks are far from every true object (s).
     false_per_minute, moving_false_per_minute, static_false_per_minute : float
         The same in a minute of the recording (s/min): of all tracks, of those that move, and of
         those that are known to be static or of which it is undecided. Tracks without a kind move.
-    duplicate_per_minute : float
-        Part of `false_per_minute` for which tracks are within reach of a true object that has
-        another track (s/min).
+    redundant_per_minute : float
+        Time in a minute for which tracks are near a true object, but are not the one that it has
+        (s/min).
     """
 
     share_tracked: float
@@ -55,7 +55,7 @@ class TrackLife:
     false_per_minute: float
     moving_false_per_minute: float
     static_false_per_minute: float
-    duplicate_per_minute: float
+    redundant_per_minute: float
 
 
 def track_life(scene: Scene, found: Correspondences, near: NDArray[np.bool_]) -> TrackLife:
@@ -69,7 +69,7 @@ def track_life(scene: Scene, found: Correspondences, near: NDArray[np.bool_]) ->
     found : Correspondences
         Which track belongs to which true object.
     near : ndarray of bool, shape (n_track_rows,)
-        Whether a track is within reach of any true object.
+        Whether a track is near any true object; those that are not are false.
 
     Returns
     -------
@@ -81,8 +81,9 @@ def track_life(scene: Scene, found: Correspondences, near: NDArray[np.bool_]) ->
     distance = found.pairs.distance
     breaks = found.gaps(scene)[0].sum()
     delays = _first_matches(scene, found)
-    false = np.ones(len(scene.tracks), dtype=np.bool_)
-    false[found.pairs.track_row] = False
+    alone = np.ones(len(scene.tracks), dtype=np.bool_)
+    alone[found.pairs.track_row] = False
+    false = alone & ~near
     moves = np.ones(len(scene.tracks), dtype=np.bool_)
     if scene.tracks.kind is not None:
         moves = scene.tracks.kind == KINDS.index("moving")
@@ -107,7 +108,7 @@ def track_life(scene: Scene, found: Correspondences, near: NDArray[np.bool_]) ->
         false_per_minute=per_minute(false),
         moving_false_per_minute=per_minute(false & moves),
         static_false_per_minute=per_minute(false & ~moves),
-        duplicate_per_minute=per_minute(false & near),
+        redundant_per_minute=per_minute(alone & near),
     )
 
 

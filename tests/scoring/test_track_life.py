@@ -14,7 +14,7 @@ from fuzzytrack.scoring.track_life import track_life
 def life(of, reach=10.0):
     every = pairs(of)
     near = np.zeros(len(of.tracks), dtype=bool)
-    near[every.within(reach).track_row] = True
+    near[every.within(2 * reach).track_row] = True
     return track_life(of, Correspondences.of(of, every, reach), near)
 
 
@@ -41,9 +41,9 @@ def test_counted_by_hand():
     assert found.never_matched == 1
     assert (found.breaks, found.switches) == (0.5, 0.5)
     assert found.rmse == pytest.approx(math.sqrt((4 * 9 + 3 * 16) / 7))
-    assert found.false_time == pytest.approx(2 * (3 + 2))
-    assert found.false_per_minute == pytest.approx(60 * 10 / 20)
-    assert found.duplicate_per_minute == pytest.approx(60 * 4 / 20)
+    assert found.false_time == pytest.approx(2 * 3)
+    assert found.false_per_minute == pytest.approx(60 * 6 / 20)
+    assert found.redundant_per_minute == pytest.approx(60 * 4 / 20)
     # Tracks of which no kind is known move.
     assert found.moving_false_per_minute == found.false_per_minute
     assert found.static_false_per_minute == 0
@@ -52,10 +52,21 @@ def test_counted_by_hand():
 def test_false_tracks_by_kind():
     kind = {0: "moving", 1: "moving", 2: "moving", 3: "static"}
     found = life(scene(TRUTH, TRACKS, kind=kind, step=2.0))
-    assert found.moving_false_per_minute == pytest.approx(60 * 4 / 20)
+    assert found.moving_false_per_minute == 0
     assert found.static_false_per_minute == pytest.approx(60 * 6 / 20)
     kind[3] = "undecided"
     assert life(scene(TRUTH, TRACKS, kind=kind)).static_false_per_minute > 0
+    kind[3] = "moving"
+    assert life(scene(TRUTH, TRACKS, kind=kind, step=2.0)).moving_false_per_minute > 0
+
+
+def test_a_track_a_little_too_far_off_is_redundant_and_not_false():
+    found = life(scene([(0, 0, 0.0, 0.0)], [(0, 0, 12.0, 0.0)]))
+    assert (found.share_tracked, found.false_per_minute) == (0.0, 0.0)
+    of = scene([(k, 0, 0.0, 0.0) for k in (0, 1)], [(k, 0, 12.0, 0.0) for k in (0, 1)])
+    found = life(of)
+    assert (found.share_tracked, found.false_per_minute) == (0.0, 0.0)
+    assert found.redundant_per_minute == pytest.approx(60)
 
 
 def test_times_that_are_not_regular():
