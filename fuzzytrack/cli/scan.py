@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -14,9 +15,11 @@ from fuzzytrack.cli.output import print_json, print_table, progress, say, say_no
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
 from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.io.byte_stream import STANDARD_INPUT
+from fuzzytrack.io.files import PathLike, check_output
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.scan_run import ScanTotals
-from fuzzytrack.recordings.scanning import DEFAULT_SCANNER, ScanJob
+from fuzzytrack.recordings.scanning import DEFAULT_SCANNER, ScanJob, ScannedRecording
 
 __all__ = ["scan"]
 
@@ -154,6 +157,14 @@ def scan(
             rich_help_panel=_TRACKS,
         ),
     ] = None,
+    animate: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE.html",
+            help="Write the tracks as a page with a slider of time; of several groups the first.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
@@ -180,14 +191,15 @@ def scan(
         lateness=None if lateness is None else number_or(lateness, "--lateness", {"0": 0.0}),
         sectors=sectors,
     )
-    totals = _run(job, output, plot, tentative=tentative, quote_formulas=quote_formulas)
+    pictures = _Pictures(plot, animate)
+    totals = _run(job, output, pictures, tentative=tentative, quote_formulas=quote_formulas)
     if json:
         file = files[0] if len(files) == 1 else list(files)
-        _print_json(job, totals, {"file": file}, {"output": output, "plot": plot})
+        _print_json(job, totals, {"file": file}, {"output": output, **asdict(pictures)})
         return
     with told_aside(output):
         _print_table(job, totals)
-        for written in (output, plot):
+        for written in (output, plot, animate):
             if written not in (None, STANDARD_OUTPUT):
                 say(f"wrote {written}")
 
@@ -196,24 +208,60 @@ def _names(text: str | None, option: str) -> tuple[str, ...] | None:
     return None if text is None else tuple(options.names(text, option))
 
 
+@dataclass(frozen=True)
+class _Pictures:
+    """Files of pictures that are asked for."""
+
+    plot: str | None
+    animate: str | None
+
+    @property
+    def any(self) -> bool:
+        """Whether there is one."""
+        return self.plot is not None or self.animate is not None
+
+    def check(self, inputs: tuple[PathLike, ...]) -> None:
+        """Check that they can be written, before the tracks are made."""
+        if self.plot is not None:
+            check_picture(self.plot, inputs)
+        if self.animate is not None:
+            if Path(self.animate).suffix.lower() not in (".html", ".htm"):
+                raise ValueError(f"--animate: {self.animate}: is a page; give it the suffix .html")
+            check_output(self.animate, inputs)
+
+    def write(self, found: ScannedRecording) -> None:
+        """Write them."""
+        if self.plot is not None:
+            save_picture(self.plot, found.plot, found.job.inputs)
+        if self.animate is not None:
+            from fuzzytrack.reports.scan_page import write_scan_page
+
+            group, result = next(iter(found.results.items()))
+            read = str(found.job.inputs[0])
+            name = "standard input" if read == STANDARD_INPUT else Path(read).name
+            title = f"Tracks of {name}" + (f", {group}" if group else "")
+            axes = found.job.table.axes
+            write_scan_page(self.animate, result, found.scans[group], None, axes, title=title)
+
+
 def _run(
-    job: ScanJob, output: str | None, plot: str | None, *, tentative: bool, quote_formulas: bool
+    job: ScanJob, output: str | None, pictures: _Pictures, *, tentative: bool, quote_formulas: bool
 ) -> dict[str, ScanTotals]:
-    """Track, and write what is to be written; scans are kept for a picture only."""
+    """Track, and write what is to be written; scans are kept for pictures only."""
     with output_file(output) as place:
         if place is not None:
             job.check(place)
-        if plot is None:
+        pictures.check(job.inputs)
+        if not pictures.any:
             with progress("tracking") as watch:
                 return job.write(
                     place, tentative=tentative, progress=watch, quote_formulas=quote_formulas
                 )
-        check_picture(plot, job.inputs)
         with progress("tracking") as watch:
             found = job.whole(tentative=tentative, progress=watch)
         if place is not None:
             found.write(place, quote_formulas=quote_formulas)
-        save_picture(plot, found.plot, job.inputs)
+        pictures.write(found)
         return dict(found.totals_of)
 
 

@@ -1,0 +1,69 @@
+"""Pictures and the page that the command `scan` writes."""
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def boats(csv):
+    """Two boats in 20 scans, in two recordings of ten scans each."""
+    lines = ["run,scan,t,north_m,east_m"]
+    for k in range(20):
+        t = 1.7 * k
+        for north, east in ((3 * t, 50.0), (-80.0, 4 * t)):
+            lines.append(f"{'ab'[k // 10]},{k},{t:.2f},{north:.2f},{east:.2f}")
+    return csv("\n".join(lines) + "\n")
+
+
+def data_of(path):
+    text = re.search(r'id="data">(.*?)</script>', path.read_text("utf-8"), re.DOTALL)[1]
+    return json.loads(text)
+
+
+def test_a_picture_and_a_page_are_written_beside_the_tracks(run, boats, tmp_path):
+    page, picture, out = (tmp_path / name for name in ("p.html", "p.png", "t.csv"))
+    axes = ("--axes", "north_m,east_m")
+    result = run("scan", boats, *axes, "--animate", page, "--plot", picture, "-o", out)
+    assert result.exit_code == 0, result.output
+    wrote = [f"wrote {path}" for path in (out, picture, page)]
+    assert result.stdout.splitlines()[-3:] == wrote
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    data = data_of(page)
+    assert data["axes"] == ["east", "north"]
+    assert data["reports"]["ids"] == ["1", "2"]
+    assert len(np.frombuffer(base64.b64decode(data["times"]), "<f8")) == 20
+    plots = np.frombuffer(base64.b64decode(data["plots"]["place"]), "<f4").reshape(-1, 2)
+    place = plots + data["origin"]
+    np.testing.assert_allclose(place[:2], [[50, 0], [0, -80]], atol=1e-3)
+    assert f"<h1>Tracks of {boats.name}</h1>" in page.read_text("utf-8")
+
+
+def test_of_several_groups_the_first_is_on_the_page(run, boats, tmp_path):
+    page = tmp_path / "p.html"
+    options = ("--axes", "north_m,east_m", "--group", "run", "--json")
+    result = run("scan", boats, *options, "--animate", page)
+    assert json.loads(result.stdout)["animate"] == str(page)
+    assert json.loads(result.stdout)["plot"] is None
+    assert f"<h1>Tracks of {boats.name}, a</h1>" in page.read_text("utf-8")
+    assert len(np.frombuffer(base64.b64decode(data_of(page)["times"]), "<f8")) == 10
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("p.png", "--animate: {path}: is a page; give it the suffix .html"),
+        ("none/p.html", "{path}: there is no folder"),
+    ],
+)
+def test_a_page_that_cannot_be_written_is_refused_before_the_work(
+    run, boats, tmp_path, name, message
+):
+    path, out = tmp_path / name, tmp_path / "t.csv"
+    result = run("scan", boats, "--axes", "north_m,east_m", "--animate", path, "-o", out)
+    assert result.exit_code == 2
+    assert message.format(path=path) in result.stderr.replace("\n", "")
+    assert not out.exists()
