@@ -62,7 +62,7 @@ def test_every_option_of_every_command_is_described(reference, sections):
         ("demo", ["`-o`, `--output` `DIR`", ": .*Default: `demo`."]),
         ("demo", ["`--runs` `N`", ": Monte Carlo runs. At least 1. Default: `100`."]),
         ("design w", ["`--omega3` `W3`", ": Third pole, .*Default: `0`."]),
-        ("sample", ["`[NAME]`", ": radar, ais, adsb, sonar; none lists them."]),
+        ("sample", ["`[NAME]`", ": radar, ais, adsb, sonar, scans; none lists them."]),
     ],
 )
 def test_an_option_has_its_unit_limits_and_default(sections, path, lines):
