@@ -69,29 +69,42 @@ def _by_components(left: Integers, right: Integers, gain: Array, pairs: Integers
     """Chosen ones of some pairs, component by component."""
     rows, row = np.unique(left[pairs], return_inverse=True)
     columns, column = np.unique(right[pairs], return_inverse=True)
-    component = _components(row, column, len(rows), len(columns))
-    order = np.argsort(component, kind="stable")
-    chosen = []
-    for part in np.split(order, np.flatnonzero(np.diff(component[order])) + 1):
-        mine, yours = row[part], column[part]
-        if len(part) == 1:
-            chosen.append(pairs[part])
-            continue
-        height, mine = np.unique(mine, return_inverse=True)
-        width, yours = np.unique(yours, return_inverse=True)
-        found = _solved(mine, yours, gain[pairs[part]], (len(height), len(width)))
+    label = _components(row, column, len(rows), len(columns))
+    height, mine = _places(label[: len(rows)])
+    width, yours = _places(label[len(rows) :])
+    component = label[row]
+    # With one member on a side, the best pair is the answer; the first one of equals.
+    single = np.minimum(height, width)[component] == 1
+    one = np.flatnonzero(single)
+    one = one[np.lexsort((-gain[pairs[one]], component[one]))]
+    chosen = [pairs[one[np.unique(component[one], return_index=True)[1]]]]
+    rest = np.flatnonzero(~single)
+    rest = rest[np.argsort(component[rest], kind="stable")]
+    bounds = np.flatnonzero(np.diff(component[rest])) + 1
+    for part in np.split(rest, bounds) if len(rest) else ():
+        shape = int(height[component[part[0]]]), int(width[component[part[0]]])
+        found = _solved(mine[row[part]], yours[column[part]], gain[pairs[part]], shape)
         chosen.append(pairs[part[found]])
     return chosen
 
 
 def _components(row: Integers, column: Integers, rows: int, columns: int) -> Integers:
-    """Connected component of each pair."""
+    """Connected component of each row and of each column."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     size = rows + columns
     graph = coo_array((np.ones(len(row), dtype=np.int8), (row, column + rows)), shape=(size, size))
-    return np.asarray(connected_components(graph, directed=False)[1][row], dtype=np.int64)
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def _places(label: Integers) -> tuple[Integers, Integers]:
+    """How many members each component has, and the place of each member in its component."""
+    count = np.bincount(label)
+    order = np.argsort(label, kind="stable")
+    place = np.empty(len(label), dtype=np.int64)
+    place[order] = np.arange(len(label)) - np.repeat(np.cumsum(count) - count, count)
+    return count.astype(np.int64), place
 
 
 def _solved(row: Integers, column: Integers, gain: Array, shape: tuple[int, int]) -> Integers:

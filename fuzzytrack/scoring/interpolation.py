@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,67 +50,84 @@ def at_instants(
     """
     names, id = np.unique(positions.id, return_inverse=True)
     order = np.lexsort((positions.time, id))
-    time, position = positions.time[order], positions.position[order]
-    bounds = np.searchsorted(id[order], np.arange(len(names) + 1))
-    parts: list[tuple[Integers, Integers, Integers, Integers, Array, Array]] = []
-    for number, (first, end) in enumerate(pairwise(bounds.tolist())):
-        mine = slice(first, end)
-        where, before, after, share = _between(time[mine], instants, longest, beyond)
-        slopes = np.full((len(where), positions.n_axes), np.nan)
-        if positions.velocity is None:
-            slopes = _slopes(time[mine], position[mine], instants[where], span)
-        same = np.full(len(where), number, dtype=np.int64)
-        parts.append((where, same, before + first, after + first, share, slopes))
-    if not parts:
-        none = np.empty(0, dtype=np.int64)
-        vectors = np.empty((0, positions.n_axes))
-        kind = None if positions.kind is None else none
-        return ObjectRows(none, none, vectors, vectors, names, kind)
-    joined = [np.concatenate(part) for part in zip(*parts, strict=True)]
-    in_order = np.lexsort((joined[1], joined[0]))
-    where, number_of, before, after, share, velocity = (each[in_order] for each in joined)
+    rows = _Rows.of(id[order], positions.time[order], positions.position[order], len(names))
+    where, object_ = rows.lives(instants, beyond)
+    when = instants[where]
+    before, after, share = rows.around(object_, when, longest)
+    kept = np.flatnonzero(before >= 0)
+    chosen = kept[np.lexsort((object_[kept], where[kept]))]
+    where, object_, share = where[chosen], object_[chosen], share[chosen]
+    before, after = before[chosen], after[chosen]
     # Exactly the row where there is one.
-    place = position[before] + share[:, None] * (position[after] - position[before])
-    if positions.velocity is not None:
+    change = rows.position[after] - rows.position[before]
+    place = rows.position[before] + share[:, None] * change
+    if positions.velocity is None:
+        velocity = rows.slopes(object_, instants[where], span)
+    else:
         known, part = positions.velocity[order], np.clip(share, 0, 1)[:, None]
         velocity = known[before] + part * (known[after] - known[before])
     nearest = np.where(share >= 1, after, before)
     kinds = None if positions.kind is None else positions.kind[order][nearest]
-    return ObjectRows(where, number_of, place, velocity, names, kinds)
+    return ObjectRows(where, object_, place, velocity, names, kinds)
 
 
-def _between(
-    time: Array, instants: Array, longest: float, beyond: float
-) -> tuple[Integers, Integers, Integers, Array]:
-    """Instants at which an object exists, the rows before and after, and the share of the way."""
-    first = np.searchsorted(instants, time[0] - beyond)
-    end = np.searchsorted(instants, time[-1] + beyond, side="right")
-    where = np.arange(first, end)
-    when = instants[where]
-    before = np.clip(np.searchsorted(time, when, side="right") - 1, 0, len(time) - 1)
-    exact = time[before] == when
-    outside = (when < time[0]) | (when > time[-1])
-    if len(time) > 1:
-        after = np.where(exact, before, np.minimum(before + 1, len(time) - 1))
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Rows of objects, in order of object and time; `bounds` are those of each object."""
+
+    id: Integers
+    time: Array
+    position: Array
+    bounds: Integers
+
+    @classmethod
+    def of(cls, id: Integers, time: Array, position: Array, count: int) -> _Rows:
+        return cls(id, time, position, np.searchsorted(id, np.arange(count + 1)))
+
+    def lives(self, instants: Array, beyond: float) -> tuple[Integers, Integers]:
+        """Instants at which objects exist, and which object it is."""
+        first = np.searchsorted(instants, self.time[self.bounds[:-1]] - beyond)
+        end = np.searchsorted(instants, self.time[self.bounds[1:] - 1] + beyond, side="right")
+        count = np.maximum(end - first, 0)
+        object_ = np.repeat(np.arange(len(count)), count)
+        place = np.arange(len(object_)) - np.repeat(np.cumsum(count) - count, count)
+        return first[object_] + place, object_
+
+    def around(
+        self, object_: Integers, when: Array, longest: float
+    ) -> tuple[Integers, Integers, Array]:
+        """Rows before and after times, and the share of the way; -1 in a gap."""
+        first, last = self.bounds[object_], self.bounds[object_ + 1] - 1
+        before = np.clip(self._before(object_, when), first, last)
+        exact = self.time[before] == when
+        outside = (when < self.time[first]) | (when > self.time[last])
         # Beyond an end: along the line through the two rows there.
-        last = ~exact & (after == before)
-        before = np.where(last, before - 1, before)
-        after = np.where(last, before + 1, after)
-    else:
-        after = before
-    gap = time[after] - time[before]
-    share = np.where(gap > 0, (when - time[before]) / np.where(gap > 0, gap, 1.0), 0.0)
-    # A row far from the next one has no line; it stays where it is.
-    share = np.where(outside & (gap > longest), np.round(np.clip(share, 0, 1)), share)
-    kept = exact | outside | (gap <= longest)
-    return where[kept], before[kept], after[kept], share[kept]
+        before = np.where(~exact & (before == last), np.maximum(last - 1, first), before)
+        after = np.where(exact, before, np.minimum(before + 1, last))
+        gap = self.time[after] - self.time[before]
+        share = np.where(gap > 0, (when - self.time[before]) / np.where(gap > 0, gap, 1.0), 0.0)
+        # A row far from the next one has no line; it stays where it is.
+        share = np.where(outside & (gap > longest), np.round(np.clip(share, 0, 1)), share)
+        return np.where(exact | outside | (gap <= longest), before, -1), after, share
 
+    def _before(self, object_: Integers, when: Array) -> Integers:
+        """The last row of an object that is not later than a time; that before its first if none.
 
-def _slopes(time: Array, position: Array, when: Array, span: float) -> Array:
-    """Mean velocity of an object about some times, as far as it exists there."""
-    low = np.clip(when - span / 2, time[0], time[-1])
-    high = np.clip(when + span / 2, time[0], time[-1])
-    ends = (np.stack([np.interp(t, time, x) for x in position.T], axis=1) for t in (high, low))
-    change = np.subtract(*ends)
-    gap = (high - low)[:, None]
-    return np.where(gap > 0, change / np.where(gap > 0, gap, 1.0), np.nan)
+        Objects and times are compared as whole numbers: the places of times among all of them.
+        """
+        every = np.unique(np.concatenate([self.time, when]))
+        key = self.id * len(every) + np.searchsorted(every, self.time)
+        wanted = object_ * len(every) + np.searchsorted(every, when)
+        return np.asarray(np.searchsorted(key, wanted, side="right") - 1)
+
+    def slopes(self, object_: Integers, when: Array, span: float) -> Array:
+        """Mean velocity about times, as far as the object exists there; NaN of a single row."""
+        first, last = self.time[self.bounds[object_]], self.time[self.bounds[object_ + 1] - 1]
+        ends = [np.clip(when + side * span / 2, first, last) for side in (-1, 1)]
+        places = []
+        for end in ends:
+            before, after, share = self.around(object_, end, np.inf)
+            change = self.position[after] - self.position[before]
+            places.append(self.position[before] + share[:, None] * change)
+        gap = (ends[1] - ends[0])[:, None]
+        return np.where(gap > 0, (places[1] - places[0]) / np.where(gap > 0, gap, 1.0), np.nan)
