@@ -1,0 +1,173 @@
+"""How well tracks follow the targets whose truth is known, where not every target's truth is.
+
+At each scan tracks and true targets are paired one to one within `REACH`, as many as can be, at the
+least sum of squared distances. A track farther than `CUTOFF` from every true target may be a boat
+or a shore whose truth nobody recorded: it does not count in OSPA. It is *false*, and *fast* where
+it moved at more than `FAST` over its last `WINDOW`, whatever the tracker says of its kind: by the
+same rule for every tracker.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from benchmarks.peers import Array
+from benchmarks.scan_peers import Followed
+
+__all__ = ["CUTOFF", "FAST", "REACH", "Judgment", "fast_rows", "judged", "mean_judgment"]
+
+#: Of OSPA, whose order is 2 (m); farthest track of a target (m); m/s; s.
+CUTOFF, REACH, FAST, WINDOW = 20.0, 15.0, 0.5, 10.0
+
+
+@dataclass(frozen=True)
+class Judgment:
+    """Figures of one tracker on one recording.
+
+    Attributes
+    ----------
+    ospa : float
+        Mean over scans (m).
+    tracked : float
+        Share of target-scans with a track within `REACH`.
+    delay : float
+        Time from the first scan with a target to its first pair (s), mean over targets.
+    switches : float
+        Changes of the paired identity, per target.
+    breaks : float
+        Times that a paired target is without a track and is paired again later, per target.
+    fast, false : float
+        Track-seconds a minute of false tracks that move fast, and of all.
+    rmse : float
+        Root mean square distance of pairs (m).
+    milliseconds : float
+        Mean time of a scan.
+    """
+
+    ospa: float
+    tracked: float
+    delay: float
+    switches: float
+    breaks: float
+    fast: float
+    false: float
+    rmse: float
+    milliseconds: float
+
+
+def judged(
+    found: Followed, times: Sequence[float], truth: Mapping[int, Array], period: float
+) -> Judgment:
+    """Judge tracks.
+
+    Parameters
+    ----------
+    found : Followed
+    times : sequence of float
+        Of the scans (s), by the clock of `found`.
+    truth : mapping of target to ndarray, shape (n, 3)
+        Time by the same clock, and position.
+    period : float
+        Of a scan (s): what a track in it counts.
+    """
+    fast = fast_rows(found)
+    ospas, squares, pairs = [], [], dict[int, list[int]]()
+    false_scans, fast_scans, scans = 0, 0, 0
+    for time in times:
+        present, places = _at(truth, time)
+        if not present:
+            continue
+        scans += 1
+        rows = np.flatnonzero(found.time == time)
+        distance = np.linalg.norm(found.position[rows][:, None] - places, axis=2)
+        near = distance.min(axis=1, initial=np.inf) <= CUTOFF
+        ospas.append(_ospa(distance[near]))
+        paired = dict(_pairs(distance))
+        squares += [distance[row, target] ** 2 for target, row in paired.items()]
+        for target, name in enumerate(present):
+            pairs.setdefault(name, []).append(
+                int(found.track_id[rows[paired[target]]]) if target in paired else -1
+            )
+        false = np.delete(rows, list(paired.values()))
+        false_scans += len(false)
+        fast_scans += int(fast[false].sum())
+    histories = [np.array(each) for each in pairs.values()]
+    minutes = scans * period / 60
+    return Judgment(
+        ospa=float(np.mean(ospas)),
+        tracked=float(np.mean(np.concatenate(histories) >= 0)),
+        delay=period * float(np.mean([_first(each) for each in histories])),
+        switches=float(np.mean([_switches(each) for each in histories])),
+        breaks=float(np.mean([_breaks(each) for each in histories])),
+        fast=fast_scans * period / minutes,
+        false=false_scans * period / minutes,
+        rmse=float(np.sqrt(np.mean(squares))) if squares else float("nan"),
+        milliseconds=1e3 * float(found.seconds.mean()),
+    )
+
+
+def mean_judgment(each: Sequence[Judgment]) -> Judgment:
+    """Mean of the figures of several recordings."""
+    return Judgment(
+        *(float(np.mean([getattr(one, field.name) for one in each])) for field in fields(Judgment))
+    )
+
+
+def fast_rows(found: Followed) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Rows whose track moved at more than `FAST`, by its positions over the last `WINDOW`."""
+    fast = np.zeros(len(found.time), bool)
+    for track in np.unique(found.track_id):
+        rows = np.flatnonzero(found.track_id == track)
+        time, place = found.time[rows], found.position[rows]
+        before = np.searchsorted(time, time - WINDOW)
+        path = np.linalg.norm(place - place[before], axis=1)
+        fast[rows] = path > FAST * (time - time[before])
+    return fast
+
+
+def _at(truth: Mapping[int, Array], time: float) -> tuple[list[int], Array]:
+    present = [name for name, path in truth.items() if path[0, 0] <= time <= path[-1, 0]]
+    places = [
+        [np.interp(time, truth[name][:, 0], truth[name][:, axis]) for axis in (1, 2)]
+        for name in present
+    ]
+    return present, np.array(places).reshape(-1, 2)
+
+
+def _pairs(distance: Array) -> list[tuple[int, int]]:
+    """Target and row of each pair within `REACH`."""
+    cost = np.where(distance <= REACH, distance**2, len(distance) * 1e3 * REACH**2)
+    rows, targets = linear_sum_assignment(cost)
+    return [
+        (int(target), int(row))
+        for row, target in zip(rows, targets, strict=True)
+        if distance[row, target] <= REACH
+    ]
+
+
+def _ospa(distance: Array) -> float:
+    tracks, targets = distance.shape
+    cut = np.minimum(distance, CUTOFF) ** 2
+    rows, columns = linear_sum_assignment(cut)
+    missing = CUTOFF**2 * abs(tracks - targets)
+    return float(np.sqrt((cut[rows, columns].sum() + missing) / max(tracks, targets)))
+
+
+def _first(history: Array) -> int:
+    return int(np.argmax(history >= 0)) if (history >= 0).any() else len(history)
+
+
+def _switches(history: Array) -> int:
+    paired = history[history >= 0]
+    return int((paired[1:] != paired[:-1]).sum())
+
+
+def _breaks(history: Array) -> int:
+    """Ends of a run of pairs that another run follows."""
+    ends = int(((history[:-1] >= 0) & (history[1:] < 0)).sum())
+    lost = (history >= 0).any() and history[-1] < 0
+    return ends - int(lost)

@@ -1,0 +1,274 @@
+"""Other track-while-scan trackers, each optional, on the same scans.
+
+A peer is given the noise of the plots in range and bearing, as a covariance of each plot, and what
+`Setting` says; it returns its tracks after every scan, and how long each scan took. Its objects for
+the plots are made beforehand and are not timed.
+"""
+
+from __future__ import annotations
+
+import functools
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from benchmarks.peers import Array, need
+from fuzzytrack.scan.scan import Scan
+
+__all__ = ["Followed", "Peer", "Setting", "norfair", "plot_covariances", "stonesoup"]
+
+_BEGIN = datetime(2000, 1, 1)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a peer is told about the radar and its targets.
+
+    Attributes
+    ----------
+    period : float
+        Of a scan (s).
+    range_noise, bearing_noise, extra_noise : float
+        Standard deviations of a plot: m, rad, m.
+    acceleration : float
+        Of a target, in each axis, drawn anew each scan (m/s²).
+    speed : float
+        Standard deviation of the velocity of a new track in each axis (m/s).
+    detection : float
+        Probability that a target is seen in a scan.
+    clutter : float
+        Clutter plots a square meter and scan.
+    gate : float
+        Largest distance of a plot from its prediction, in standard deviations.
+    hits : int
+        Plots that confirm a track.
+    tentative_misses, misses : int
+        Scans in a row without a plot that end a track before it is confirmed, and after.
+    """
+
+    period: float
+    range_noise: float = 1.0
+    bearing_noise: float = 0.006
+    extra_noise: float = 0.7
+    acceleration: float = 0.12
+    speed: float = 2.0
+    detection: float = 0.9
+    clutter: float = 1e-5
+    gate: float = 4.0
+    hits: int = 4
+    tentative_misses: int = 2
+    misses: int = 5
+
+
+class Followed(NamedTuple):
+    """Tracks as they were after each scan, one row a track and scan, and seconds a scan."""
+
+    time: Array
+    track_id: np.ndarray[Any, np.dtype[np.int64]]
+    position: Array
+    seconds: Array
+
+
+Clock = Callable[[], float]
+
+
+class Peer(Protocol):
+    """A tracker that follows scans; seconds are those of the clock."""
+
+    def __call__(
+        self, scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
+    ) -> Followed: ...
+
+
+
+def plot_covariances(scan: Scan, setting: Setting) -> Array:
+    """Covariance of each plot (m²), shape (n, 2, 2): its own, or by range and bearing.
+
+    Without noise in bearing it is round, with the deviations in range and in extra.
+    """
+    if scan.covariances is not None:
+        xx, xy, yy = np.asarray(scan.covariances).T
+        return np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -1)
+    if not setting.bearing_noise:
+        variance = setting.range_noise**2 + setting.extra_noise**2
+        return np.broadcast_to(variance * np.eye(2), (len(scan), 2, 2))
+    offset = scan.positions - np.asarray(scan.own)
+    distance = np.maximum(np.hypot(*offset.T), 1e-9)
+    along = offset / distance[:, None]
+    across = np.stack([-along[:, 1], along[:, 0]], -1)
+    variances = setting.range_noise**2, (setting.bearing_noise * distance) ** 2
+    found = setting.extra_noise**2 * np.eye(2) + sum(
+        np.asarray(variance)[..., None, None] * direction[:, :, None] * direction[:, None, :]
+        for variance, direction in zip(variances, (along, across), strict=True)
+    )
+    return np.asarray(found)
+
+
+def _timed(
+    steps: Iterator[Any],
+    shown: Callable[[Any], Mapping[int, Array]],
+    scans: Sequence[Scan],
+    clock: Clock,
+) -> Followed:
+    rows: list[tuple[float, int, Array]] = []
+    seconds = np.empty(len(scans))
+    for k, scan in enumerate(scans):
+        begin = clock()
+        step = next(steps)
+        seconds[k] = clock() - begin
+        rows += [(scan.time, track, where) for track, where in shown(step).items()]
+    times, tracks, places = zip(*rows, strict=True) if rows else ((), (), ())
+    return Followed(
+        np.array(times, float), np.array(tracks, np.int64),
+        np.array(places, float).reshape(-1, 2), seconds,
+    )  # fmt: skip
+
+
+# -------------------------------------------------------------------- Stone Soup
+
+
+def stonesoup(association: str) -> Peer:
+    """Stone Soup with the parts of its own examples: "GNN", "JPDA" or "JPDA by propagation".
+
+    A Kalman filter for a target of nearly constant velocity; global nearest neighbor by Mahalanobis
+    distance with two-dimensional assignment, or joint probabilistic data association, exact or by
+    loopy belief propagation, for which the number of tracks does not matter; tracks from several
+    plots, held by an initiator of their own. Without noise in bearing all plots have the same noise,
+    and are searched in a KD-tree.
+    """
+
+    def follow(
+        scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
+    ) -> Followed:
+        detections = _detections(scans, setting)
+        tracker = _tracker(association, detections, setting)
+        numbers: dict[str, int] = {}
+
+        def shown(step: Any) -> Mapping[int, Array]:
+            return {
+                numbers.setdefault(track.id, len(numbers) + 1): np.array(
+                    track.state.mean[[0, 2], 0], float
+                )
+                for track in step[1]
+            }
+
+        return _timed(iter(tracker), shown, scans, clock)
+
+    return follow
+
+
+def _detections(scans: Sequence[Scan], setting: Setting) -> list[tuple[datetime, set[Any]]]:
+    detection = need("stonesoup.types.detection", "stonesoup").Detection
+    linear = need("stonesoup.models.measurement.linear", "stonesoup").LinearGaussian
+    # Plots of equal noise share a model, for which the KD-tree asks.
+    model = functools.cache(lambda noise: linear(4, (0, 2), np.frombuffer(noise).reshape(2, 2)))
+    found = []
+    for scan in scans:
+        when = _BEGIN + timedelta(seconds=float(scan.time))
+        plots = {
+            detection(
+                position[:, None],
+                timestamp=when,
+                measurement_model=model(np.ascontiguousarray(covariance).tobytes()),
+            )
+            for position, covariance in zip(
+                scan.positions, plot_covariances(scan, setting), strict=True
+            )
+        }
+        found.append((when, plots))
+    return found
+
+
+def _tracker(association: str, detections: list[tuple[datetime, set[Any]]], setting: Setting) -> Any:
+    models = need("stonesoup.models.transition.linear", "stonesoup")
+    white = setting.acceleration**2 * setting.period
+    each = models.ConstantVelocity(white)
+    predictor = need("stonesoup.predictor.kalman", "stonesoup").KalmanPredictor(
+        models.CombinedLinearGaussianTransitionModel([each, each])
+    )
+    updater = need("stonesoup.updater.kalman", "stonesoup").KalmanUpdater(None)
+    nearest = _nearest(predictor, updater, setting)
+    deleter = need("stonesoup.deleter.time", "stonesoup").UpdateTimeStepsDeleter
+    start = need("stonesoup.types.state", "stonesoup").GaussianState(
+        [[0.0]] * 4, np.diag([0.0, setting.speed**2] * 2)
+    )
+    initiator = need("stonesoup.initiator.simple", "stonesoup").MultiMeasurementInitiator(
+        prior_state=start, deleter=deleter(setting.tentative_misses), data_associator=nearest,
+        updater=updater, min_points=setting.hits,
+    )  # fmt: skip
+    trackers = need("stonesoup.tracker.simple", "stonesoup")
+    kind, associator = trackers.MultiTargetTracker, nearest
+    if association != "GNN":
+        kind = trackers.MultiTargetMixtureTracker
+        associator = _joint(association, predictor, updater, setting)
+    return kind(
+        initiator=initiator, deleter=deleter(setting.misses), detector=detections,
+        data_associator=associator, updater=updater,
+    )  # fmt: skip
+
+
+def _nearest(predictor: Any, updater: Any, setting: Setting) -> Any:
+    hypothesiser = need("stonesoup.hypothesiser.distance", "stonesoup").DistanceHypothesiser(
+        predictor, updater, need("stonesoup.measures", "stonesoup").Mahalanobis(),
+        missed_distance=setting.gate,
+    )  # fmt: skip
+    if setting.bearing_noise > 0:
+        neighbors = need("stonesoup.dataassociator.neighbour", "stonesoup")
+        return neighbors.GNNWith2DAssignment(hypothesiser)
+    tree = need("stonesoup.dataassociator.tree", "stonesoup").DetectionKDTreeGNN2D
+    return tree(hypothesiser, predictor, updater, number_of_neighbours=5,
+                max_distance_covariance_multiplier=setting.gate)  # fmt: skip
+
+
+def _joint(association: str, predictor: Any, updater: Any, setting: Setting) -> Any:
+    from scipy.stats import chi2
+
+    hypothesiser = need("stonesoup.hypothesiser.probability", "stonesoup").PDAHypothesiser(
+        predictor, updater, clutter_spatial_density=setting.clutter,
+        prob_detect=setting.detection, prob_gate=float(chi2.cdf(setting.gate**2, 2)),
+    )  # fmt: skip
+    joint = need("stonesoup.dataassociator.probability", "stonesoup")
+    return {"JPDA": joint.JPDA, "JPDA by propagation": joint.JPDAwithLBP}[association](hypothesiser)
+
+
+# -------------------------------------------------------------------- norfair
+
+
+def norfair(
+    scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
+) -> Followed:
+    """Norfair, made for pictures: fixed noise, greedy pairs by distance, scans of equal period.
+
+    It is given its units as they are, one step a scan; its gate is the distance in meters that
+    `Setting.gate` deviations of plot and of a step at the speed of a new track make.
+    """
+    package = need("norfair", "norfair")
+    filters = need("norfair.filter", "norfair").OptimizedKalmanFilterFactory
+    detections = [
+        [package.Detection(points=position[None]) for position in scan.positions] for scan in scans
+    ]
+    variance = setting.range_noise**2 + setting.extra_noise**2
+    step = (setting.speed * setting.period) ** 2
+    tracker = package.Tracker(
+        distance_function="euclidean",
+        distance_threshold=setting.gate * float(np.sqrt(variance + step)),
+        hit_counter_max=setting.misses,
+        initialization_delay=setting.hits - 1,
+        filter_factory=filters(
+            R=variance, Q=(setting.acceleration * setting.period**2) ** 2, pos_variance=variance,
+            vel_variance=step,
+        ),
+    )  # fmt: skip
+
+    def steps() -> Iterator[Any]:
+        for plots in detections:
+            yield tracker.update(detections=plots)
+
+    def shown(step: Any) -> Mapping[int, Array]:
+        return {each.id: np.array(each.estimate[0], float) for each in step}
+
+    return _timed(steps(), shown, scans, clock)
