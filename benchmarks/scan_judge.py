@@ -1,10 +1,11 @@
-"""How well tracks follow the targets whose truth is known, where not every target's truth is.
+"""How well tracks follow targets with known positions, by one rule for every tracker.
 
 At each scan tracks and true targets are paired one to one within `REACH`, as many as can be, at the
-least sum of squared distances. A track farther than `CUTOFF` from every true target may be a boat
-or a shore whose truth nobody recorded: it does not count in OSPA. It is *false*, and *fast* where
-it moved at more than `FAST` over its last `WINDOW`, whatever the tracker says of its kind: by the
-same rule for every tracker.
+least sum of squared distances. A track without a pair is *false*, and *fast* where it moved at more
+than `FAST` over its last `WINDOW`, whatever its tracker says of its kind.
+
+In a recording the truth is not complete: there are moored boats, a shore, and others that sail by.
+There a track farther than `CUTOFF` from every true target does not count in OSPA.
 """
 
 from __future__ import annotations
@@ -13,12 +14,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from benchmarks.peers import Array
 from benchmarks.scan_peers import Followed
 
 __all__ = ["CUTOFF", "FAST", "REACH", "Judgment", "fast_rows", "judged", "mean_judgment"]
+
+Mask = NDArray[np.bool_]
 
 #: Of OSPA, whose order is 2 (m); farthest track of a target (m); m/s; s.
 CUTOFF, REACH, FAST, WINDOW = 20.0, 15.0, 0.5, 10.0
@@ -32,6 +36,8 @@ class Judgment:
     ----------
     ospa : float
         Mean over scans (m).
+    ospa_fast : float
+        The same where false tracks count that are fast.
     tracked : float
         Share of target-scans with a track within `REACH`.
     delay : float
@@ -42,6 +48,8 @@ class Judgment:
         Times that a paired target is without a track and is paired again later, per target.
     fast, false : float
         Track-seconds a minute of false tracks that move fast, and of all.
+    false_tracks : float
+        Tracks that are false in more than half of their scans, a minute.
     rmse : float
         Root mean square distance of pairs (m).
     milliseconds : float
@@ -49,18 +57,25 @@ class Judgment:
     """
 
     ospa: float
+    ospa_fast: float
     tracked: float
     delay: float
     switches: float
     breaks: float
     fast: float
     false: float
+    false_tracks: float
     rmse: float
     milliseconds: float
 
 
 def judged(
-    found: Followed, times: Sequence[float], truth: Mapping[int, Array], period: float
+    found: Followed,
+    times: Sequence[float],
+    truth: Mapping[int, Array],
+    period: float,
+    *,
+    complete: bool,
 ) -> Judgment:
     """Judge tracks.
 
@@ -73,10 +88,13 @@ def judged(
         Time by the same clock, and position.
     period : float
         Of a scan (s): what a track in it counts.
+    complete : bool
+        Whether every target is in `truth`, so that every track counts in OSPA.
     """
     fast = fast_rows(found)
     ospas, squares, pairs = [], [], dict[int, list[int]]()
-    false_scans, fast_scans, scans = 0, 0, 0
+    wrong = np.zeros(len(found.time), bool)
+    scans = 0
     for time in times:
         present, places = _at(truth, time)
         if not present:
@@ -84,27 +102,28 @@ def judged(
         scans += 1
         rows = np.flatnonzero(found.time == time)
         distance = np.linalg.norm(found.position[rows][:, None] - places, axis=2)
-        near = distance.min(axis=1, initial=np.inf) <= CUTOFF
-        ospas.append(_ospa(distance[near]))
+        counts = complete | (distance.min(axis=1, initial=np.inf) <= CUTOFF)
+        ospas.append((_ospa(distance[counts]), _ospa(distance[counts | fast[rows]])))
         paired = dict(_pairs(distance))
         squares += [distance[row, target] ** 2 for target, row in paired.items()]
         for target, name in enumerate(present):
             pairs.setdefault(name, []).append(
                 int(found.track_id[rows[paired[target]]]) if target in paired else -1
             )
-        false = np.delete(rows, list(paired.values()))
-        false_scans += len(false)
-        fast_scans += int(fast[false].sum())
+        wrong[np.delete(rows, list(paired.values()))] = True
     histories = [np.array(each) for each in pairs.values()]
     minutes = scans * period / 60
+    ospa, ospa_fast = np.mean(ospas, axis=0)
     return Judgment(
-        ospa=float(np.mean(ospas)),
+        ospa=float(ospa),
+        ospa_fast=float(ospa_fast),
         tracked=float(np.mean(np.concatenate(histories) >= 0)),
         delay=period * float(np.mean([_first(each) for each in histories])),
         switches=float(np.mean([_switches(each) for each in histories])),
         breaks=float(np.mean([_breaks(each) for each in histories])),
-        fast=fast_scans * period / minutes,
-        false=false_scans * period / minutes,
+        fast=float((wrong & fast).sum()) * period / minutes,
+        false=float(wrong.sum()) * period / minutes,
+        false_tracks=_mostly(wrong, found.track_id) / minutes,
         rmse=float(np.sqrt(np.mean(squares))) if squares else float("nan"),
         milliseconds=1e3 * float(found.seconds.mean()),
     )
@@ -117,7 +136,7 @@ def mean_judgment(each: Sequence[Judgment]) -> Judgment:
     )
 
 
-def fast_rows(found: Followed) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def fast_rows(found: Followed) -> Mask:
     """Rows whose track moved at more than `FAST`, by its positions over the last `WINDOW`."""
     fast = np.zeros(len(found.time), bool)
     for track in np.unique(found.track_id):
@@ -151,10 +170,18 @@ def _pairs(distance: Array) -> list[tuple[int, int]]:
 
 def _ospa(distance: Array) -> float:
     tracks, targets = distance.shape
+    if not tracks:
+        return CUTOFF
     cut = np.minimum(distance, CUTOFF) ** 2
     rows, columns = linear_sum_assignment(cut)
     missing = CUTOFF**2 * abs(tracks - targets)
     return float(np.sqrt((cut[rows, columns].sum() + missing) / max(tracks, targets)))
+
+
+def _mostly(wrong: Mask, track_id: NDArray[np.int64]) -> int:
+    """Number of tracks that are wrong in more than half of their rows."""
+    _, track = np.unique(track_id, return_inverse=True)
+    return int((np.bincount(track, weights=wrong) > 0.5 * np.bincount(track)).sum())
 
 
 def _first(history: Array) -> int:

@@ -15,11 +15,19 @@ from datetime import datetime, timedelta
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.peers import Array, need
 from fuzzytrack.scan.scan import Scan
 
-__all__ = ["Followed", "Peer", "Setting", "norfair", "plot_covariances", "stonesoup"]
+__all__ = [
+    "CONFIGURATIONS", "Followed", "Peer", "Setting", "norfair", "plot_covariances", "shipped",
+    "stonesoup",
+]  # fmt: skip
+
+#: Configurations of scan trackers that come with the package.
+CONFIGURATIONS = ("default", "fading", "zhang-jiang", "zhang-jiang-safe", "m-of-n")
+
 
 _BEGIN = datetime(2000, 1, 1)
 
@@ -68,7 +76,7 @@ class Followed(NamedTuple):
     """Tracks as they were after each scan, one row a track and scan, and seconds a scan."""
 
     time: Array
-    track_id: np.ndarray[Any, np.dtype[np.int64]]
+    track_id: NDArray[np.int64]
     position: Array
     seconds: Array
 
@@ -126,6 +134,28 @@ def _timed(
         np.array(times, float), np.array(tracks, np.int64),
         np.array(places, float).reshape(-1, 2), seconds,
     )  # fmt: skip
+
+
+# -------------------------------------------------------------------- fuzzytrack
+
+
+def shipped(name: str, tracker: str | None = None) -> Peer:
+    """A shipped configuration, which has its own numbers; maybe with another tracker in it."""
+    from fuzzytrack.scan.catalog import load_scanner
+
+    scanner = load_scanner(name)
+
+    def follow(
+        scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
+    ) -> Followed:
+        session = scanner.start()
+
+        def shown(step: Any) -> Mapping[int, Array]:
+            return dict(zip(step.track_id.tolist(), step.position, strict=True))
+
+        return _timed(map(session.step, scans), shown, scans, clock)
+
+    return follow
 
 
 # -------------------------------------------------------------------- Stone Soup

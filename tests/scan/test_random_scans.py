@@ -1,0 +1,21 @@
+"""Scans of any kind: taken, or refused without a change."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import fuzz_scans
+
+
+@pytest.mark.untraced
+def test_fuzzed_scans_are_tracked_or_refused(monkeypatch):
+    # A process of many tests is larger, and under their load slower.
+    monkeypatch.setattr(fuzz_scans, "SECONDS", 600.0)
+    monkeypatch.setattr(fuzz_scans, "MEBIBYTES", 1e6)
+    report = fuzz_scans.run((1, 0, 30, 2000))
+    assert report.failures == []
+    # A fuzzer whose scans all fail, or all pass, tests nothing.
+    assert min(report.taken, report.refused) > 30
+    assert report.scans == report.taken + report.refused
