@@ -27,7 +27,7 @@ import numpy as np
 from benchmarks.peers import Array
 from benchmarks.ranking import Table, lines, rounded
 from benchmarks.scan_judge import Judgment, judged, mean_judgment
-from benchmarks.scan_peers import Peer, Setting, shipped, stonesoup
+from benchmarks.scan_peers import CONFIGURATIONS, Peer, Setting, shipped, stonesoup
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.json_types import plain
 from fuzzytrack.scan.scan import Scan
@@ -36,6 +36,13 @@ from fuzzytrack.tasks import Progress
 #: Time of the radar minus that of the truth (s), by scenario.
 LAGS = {2: 2.25, 4: 3.50, 16: 1.75}
 PERIOD = 1.678
+#: Trackers that take the place of that of `default`.
+TRACKERS = {
+    "fixed": "fixed:alpha=.5:beta=.2",
+    "maneuver": "maneuver",
+    "Kalman CV": "kalman-cv:sigma_v=.2",
+    "IMM": "imm",
+}
 #: What Stone Soup is told: of 40 random settings the best on these same scenarios.
 PEER_SETTINGS = {
     "GNN": Setting(PERIOD),
@@ -85,13 +92,11 @@ def _place(row: Mapping[str, str]) -> tuple[float, float]:
 
 def judge(peer: Peer, setting: Setting, found: list[Recording]) -> dict[str, Judgment]:
     """Judgments by scenario, and their mean."""
-    each = {
-        str(one.scenario): judged(
-            peer(one.scans, setting), [scan.time for scan in one.scans], one.truth, PERIOD,
-            complete=False,
-        )  # fmt: skip
-        for one in found
-    }
+    each = {}
+    for one in found:
+        times = [scan.time for scan in one.scans]
+        tracks = peer(one.scans, setting)
+        each[str(one.scenario)] = judged(tracks, times, one.truth, PERIOD, complete=False)
     return {**each, "mean": mean_judgment(list(each.values()))}
 
 
@@ -105,8 +110,10 @@ def measured(
     return figures
 
 
-HEAD = ["", "", "OSPA", "with fast", "tracked", "delay, s", "switches", "breaks", "fast, s/min", "false, s/min",
-        "RMSE", "ms a scan"]  # fmt: skip
+HEAD = [
+    "", "", "OSPA", "with fast", "tracked", "delay, s", "switches", "breaks", "fast, s/min",
+    "false, s/min", "RMSE", "ms a scan",
+]  # fmt: skip
 
 
 def table(figures: Mapping[str, Mapping[str, Judgment]]) -> Table:
@@ -115,9 +122,9 @@ def table(figures: Mapping[str, Mapping[str, Judgment]]) -> Table:
     for name, each in figures.items():
         for scenario, one in each.items():
             cells = [
-                f"{one.ospa:.2f}", f"{one.ospa_fast:.2f}", f"{one.tracked:.3f}", f"{one.delay:.1f}", f"{one.switches:.2g}",
-                f"{one.breaks:.2g}", f"{one.fast:.1f}", f"{one.false:.1f}", f"{one.rmse:.2f}",
-                f"{one.milliseconds:.3g}",
+                f"{one.ospa:.2f}", f"{one.ospa_fast:.2f}", f"{one.tracked:.3f}",
+                f"{one.delay:.1f}", f"{one.switches:.2g}", f"{one.breaks:.2g}", f"{one.fast:.1f}",
+                f"{one.false:.1f}", f"{one.rmse:.2f}", f"{one.milliseconds:.3g}",
             ]  # fmt: skip
             rows.append([name, scenario, *cells])
     return rows
@@ -135,8 +142,8 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     plots = Setting(PERIOD)
     peers = {name: (shipped(name), plots) for name in CONFIGURATIONS}
-    for tracker in TRACKERS:
-        peers[f"default, {tracker}"] = shipped("default", tracker), plots
+    for name, tracker in TRACKERS.items():
+        peers[f"default, {name}"] = shipped("default", tracker), plots
     if given.peers:
         for name, setting in PEER_SETTINGS.items():
             peers[f"Stone Soup {name}"] = stonesoup(name), setting

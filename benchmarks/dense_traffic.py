@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.ranking import Table, lines, rounded
-from benchmarks.scan_judge import REACH
+from benchmarks.scan_judge import Rule
 from benchmarks.scan_peers import CONFIGURATIONS, Peer, Setting, shipped
 from benchmarks.scan_traffic import Traffic, traffic
 from fuzzytrack.cli.output import progress, write_json
@@ -42,14 +42,14 @@ def shares(peer: Peer, world: Traffic) -> Shares:
 
 
 def matched(tracks: np.ndarray, ships: np.ndarray) -> int:
-    """Number of one-to-one pairs within `REACH`, as many as can be."""
+    """Number of one-to-one pairs within reach, as many as can be."""
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import maximum_bipartite_matching
     from scipy.spatial import KDTree
 
     if not len(tracks):
         return 0
-    near = KDTree(tracks).query_ball_point(ships, REACH)
+    near = KDTree(tracks).query_ball_point(ships, Rule.reach)
     columns = np.concatenate([np.array(each, int) for each in near])
     starts = np.concatenate([[0], np.cumsum([len(each) for each in near])])
     pairs = csr_matrix((np.ones(len(columns)), columns, starts), (len(ships), len(tracks)))

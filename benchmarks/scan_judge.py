@@ -1,11 +1,11 @@
 """How well tracks follow targets with known positions, by one rule for every tracker.
 
-At each scan tracks and true targets are paired one to one within `REACH`, as many as can be, at the
-least sum of squared distances. A track without a pair is *false*, and *fast* where it moved at more
-than `FAST` over its last `WINDOW`, whatever its tracker says of its kind.
+At each scan tracks and true targets are paired one to one within reach, as many as can be, at the
+least sum of squared distances. A track without a pair is *false*, and *fast* where it moved fast
+over its last seconds, whatever its tracker says of its kind.
 
 In a recording the truth is not complete: there are moored boats, a shore, and others that sail by.
-There a track farther than `CUTOFF` from every true target does not count in OSPA.
+There a track farther than the cutoff from every true target does not count in OSPA.
 """
 
 from __future__ import annotations
@@ -20,12 +20,29 @@ from scipy.optimize import linear_sum_assignment
 from benchmarks.peers import Array
 from benchmarks.scan_peers import Followed
 
-__all__ = ["CUTOFF", "FAST", "REACH", "Judgment", "fast_rows", "judged", "mean_judgment"]
+__all__ = ["Judgment", "Rule", "fast_rows", "judged", "mean_judgment"]
 
 Mask = NDArray[np.bool_]
 
-#: Of OSPA, whose order is 2 (m); farthest track of a target (m); m/s; s.
-CUTOFF, REACH, FAST, WINDOW = 20.0, 15.0, 0.5, 10.0
+
+@dataclass(frozen=True)
+class Rule:
+    """Numbers of a judgment.
+
+    Attributes
+    ----------
+    cutoff : float
+        Of OSPA, whose order is 2 (m).
+    reach : float
+        Greatest distance of a pair (m).
+    fast, window : float
+        Speed from which a track is fast (m/s), over its last seconds (s).
+    """
+
+    cutoff: float = 20.0
+    reach: float = 15.0
+    fast: float = 0.5
+    window: float = 10.0
 
 
 @dataclass(frozen=True)
@@ -39,7 +56,7 @@ class Judgment:
     ospa_fast : float
         The same where false tracks count that are fast.
     tracked : float
-        Share of target-scans with a track within `REACH`.
+        Share of target-scans with a track within reach.
     delay : float
         Time from the first scan with a target to its first pair (s), mean over targets.
     switches : float
@@ -76,6 +93,7 @@ def judged(
     period: float,
     *,
     complete: bool,
+    rule: Rule = Rule(),
 ) -> Judgment:
     """Judge tracks.
 
@@ -91,7 +109,7 @@ def judged(
     complete : bool
         Whether every target is in `truth`, so that every track counts in OSPA.
     """
-    fast = fast_rows(found)
+    fast = fast_rows(found, rule)
     ospas, squares, pairs = [], [], dict[int, list[int]]()
     wrong = np.zeros(len(found.time), bool)
     scans = 0
@@ -102,9 +120,9 @@ def judged(
         scans += 1
         rows = np.flatnonzero(found.time == time)
         distance = np.linalg.norm(found.position[rows][:, None] - places, axis=2)
-        counts = complete | (distance.min(axis=1, initial=np.inf) <= CUTOFF)
-        ospas.append((_ospa(distance[counts]), _ospa(distance[counts | fast[rows]])))
-        paired = dict(_pairs(distance))
+        counts = complete | (distance.min(axis=1, initial=np.inf) <= rule.cutoff)
+        ospas.append([_ospa(distance[each], rule.cutoff) for each in (counts, counts | fast[rows])])
+        paired = dict(_pairs(distance, rule.reach))
         squares += [distance[row, target] ** 2 for target, row in paired.items()]
         for target, name in enumerate(present):
             pairs.setdefault(name, []).append(
@@ -136,15 +154,15 @@ def mean_judgment(each: Sequence[Judgment]) -> Judgment:
     )
 
 
-def fast_rows(found: Followed) -> Mask:
-    """Rows whose track moved at more than `FAST`, by its positions over the last `WINDOW`."""
+def fast_rows(found: Followed, rule: Rule) -> Mask:
+    """Rows whose track moved fast, by its positions."""
     fast = np.zeros(len(found.time), bool)
     for track in np.unique(found.track_id):
         rows = np.flatnonzero(found.track_id == track)
         time, place = found.time[rows], found.position[rows]
-        before = np.searchsorted(time, time - WINDOW)
+        before = np.searchsorted(time, time - rule.window)
         path = np.linalg.norm(place - place[before], axis=1)
-        fast[rows] = path > FAST * (time - time[before])
+        fast[rows] = path > rule.fast * (time - time[before])
     return fast
 
 
@@ -157,24 +175,25 @@ def _at(truth: Mapping[int, Array], time: float) -> tuple[list[int], Array]:
     return present, np.array(places).reshape(-1, 2)
 
 
-def _pairs(distance: Array) -> list[tuple[int, int]]:
-    """Target and row of each pair within `REACH`."""
-    cost = np.where(distance <= REACH, distance**2, len(distance) * 1e3 * REACH**2)
+def _pairs(distance: Array, reach: float) -> list[tuple[int, int]]:
+    """Target and row of each pair within reach."""
+    # A pair within reach is worth more than all distances together.
+    cost = np.where(distance <= reach, (distance / reach) ** 2, 1.0 + max(distance.shape))
     rows, targets = linear_sum_assignment(cost)
     return [
         (int(target), int(row))
         for row, target in zip(rows, targets, strict=True)
-        if distance[row, target] <= REACH
+        if distance[row, target] <= reach
     ]
 
 
-def _ospa(distance: Array) -> float:
+def _ospa(distance: Array, cutoff: float) -> float:
     tracks, targets = distance.shape
     if not tracks:
-        return CUTOFF
-    cut = np.minimum(distance, CUTOFF) ** 2
+        return cutoff
+    cut = np.minimum(distance, cutoff) ** 2
     rows, columns = linear_sum_assignment(cut)
-    missing = CUTOFF**2 * abs(tracks - targets)
+    missing = cutoff**2 * abs(tracks - targets)
     return float(np.sqrt((cut[rows, columns].sum() + missing) / max(tracks, targets)))
 
 

@@ -92,7 +92,6 @@ class Peer(Protocol):
     ) -> Followed: ...
 
 
-
 def plot_covariances(scan: Scan, setting: Setting) -> Array:
     """Covariance of each plot (m²), shape (n, 2, 2): its own, or by range and bearing.
 
@@ -167,8 +166,8 @@ def stonesoup(association: str) -> Peer:
     A Kalman filter for a target of nearly constant velocity; global nearest neighbor by Mahalanobis
     distance with two-dimensional assignment, or joint probabilistic data association, exact or by
     loopy belief propagation, for which the number of tracks does not matter; tracks from several
-    plots, held by an initiator of their own. Without noise in bearing all plots have the same noise,
-    and are searched in a KD-tree.
+    plots, held by an initiator of their own. Without noise in bearing all plots have the same
+    noise, and are searched in a KD-tree.
     """
 
     def follow(
@@ -213,7 +212,9 @@ def _detections(scans: Sequence[Scan], setting: Setting) -> list[tuple[datetime,
     return found
 
 
-def _tracker(association: str, detections: list[tuple[datetime, set[Any]]], setting: Setting) -> Any:
+def _tracker(
+    association: str, detections: list[tuple[datetime, set[Any]]], setting: Setting
+) -> Any:
     models = need("stonesoup.models.transition.linear", "stonesoup")
     white = setting.acceleration**2 * setting.period
     each = models.ConstantVelocity(white)

@@ -1,6 +1,6 @@
 """Configurations of scan trackers against Stone Soup, in simulated traffic with heavy clutter.
 
-    python -m benchmarks.scan_rivals [--seeds 20] [--peers GNN,JPDA] [--keep FOLDER] [-o rivals.json]
+    python -m benchmarks.scan_rivals [--seeds 20] [--peers GNN,JPDA] [--keep FOLDER] [-o out.json]
 
 200 ships on 10 km², of which some turn, end and are followed by others; 1,000 clutter plots in
 each of 30 scans; plots of ships have a standard deviation of 1.2 m in each axis, which every
@@ -29,7 +29,14 @@ from benchmarks.scan_peers import CONFIGURATIONS, Followed, Peer, Setting, shipp
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.json_types import plain
 from fuzzytrack.simulation.scene import (
-    Radar, Region, ScanTimes, Scene, SimulatedScans, TargetGroup, UniformClutter, simulate_scans,
+    Radar,
+    Region,
+    ScanTimes,
+    Scene,
+    SimulatedScans,
+    TargetGroup,
+    UniformClutter,
+    simulate_scans,
 )  # fmt: skip
 
 PERIOD, NOISE, SHIPS, SCANS = 1.678, 1.2, 200, 30
@@ -49,7 +56,7 @@ def traffic(seed: int, ships: int = SHIPS, scans: int = SCANS) -> SimulatedScans
     """The scene with its truth; plots carry their covariance."""
     scene = Scene(
         "crowded water",
-        ScanTimes(count=scans, period=PERIOD),
+        ScanTimes(count=scans, period=PERIOD, antenna="at-once"),
         Radar(reach=(0, 1e5), sigma_position=NOISE, detection=((0, 0.9), (1e5, 0.9))),
         {
             "sailing": TargetGroup(

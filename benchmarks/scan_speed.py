@@ -15,6 +15,8 @@ of docs/scan-machine.md.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import itertools
 import math
 import multiprocessing
 import sys
@@ -94,10 +96,8 @@ def cost(name: str, ships: int, area: float, scans: int, cpu: bool) -> Cost:
 def _memory(restart: bool = False) -> float:
     """Peak of resident memory (MB); of what is resident now, from now on, if it can restart."""
     if restart:
-        try:
+        with contextlib.suppress(OSError):
             Path("/proc/self/clear_refs").write_text("5")
-        except OSError:
-            pass
     for line in Path("/proc/self/status").read_text().splitlines():
         if line.startswith("VmHWM:"):
             return float(line.split()[1]) / 1024
@@ -123,7 +123,7 @@ def measured(
 def exponents(costs: Sequence[Cost]) -> dict[str, float]:
     """Exponent of the growth of time from each size to the next, and over all."""
     own = [each for each in costs if each.name == "default" and each.ships > HARBOR]
-    steps = list(zip(own, own[1:], strict=False))
+    steps = list(itertools.pairwise(own))
     if len(own) > 2:
         steps.append((own[0], own[-1]))
     return {

@@ -30,7 +30,9 @@ class Traffic:
     def paths(self) -> dict[int, Array]:
         """Time and position of each ship, shape (n_scans, 3)."""
         times = np.array([scan.time for scan in self.scans])[:, None]
-        return {ship: np.hstack([times, self.truth[:, ship]]) for ship in range(self.truth.shape[1])}
+        return {
+            ship: np.hstack([times, self.truth[:, ship]]) for ship in range(self.truth.shape[1])
+        }
 
 
 def traffic(

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
-
 from fuzzytrack.scan.catalog import load_scanner
+
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import TrackReports
 
@@ -151,7 +151,7 @@ def equal(one: TrackReports, other: TrackReports) -> bool:
     return all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in pairs)
 
 
-class Wrong(Exception):
+class FoundError(Exception):
     """What a fuzzer finds."""
 
 
@@ -159,11 +159,11 @@ def check_identities(live: TrackReports, before: set[int], newest: int) -> set[i
     """Identities of live tracks: each once, and new ones newer than any before."""
     found = live.track_id.tolist()
     if len(set(found)) < len(found):
-        raise Wrong("two tracks with one identity")
+        raise FoundError("two tracks with one identity")
     if any(each <= newest for each in set(found) - before):
-        raise Wrong("an identity is used again")
+        raise FoundError("an identity is used again")
     if not np.isfinite(live.position).all() or not np.isfinite(live.deviation).all():
-        raise Wrong("a track without a finite state")
+        raise FoundError("a track without a finite state")
     return set(found)
 
 
@@ -188,17 +188,17 @@ def attempt(seed: int, index: int, crowd: int, report: Report) -> None:
         if isinstance(one, str):
             report.refused += 1
             if one != other:
-                raise Wrong(f"refused with {one!r}, resumed with {other!r}")
+                raise FoundError(f"refused with {one!r}, resumed with {other!r}")
             continue
         report.taken += 1
         if isinstance(other, str) or not equal(one, other):
-            raise Wrong("a session that was pickled reports something else")
+            raise FoundError("a session that was pickled reports something else")
         good.append(scan)
         reports.append(one)
         live = check_identities(session.tracks(), live, newest)
         newest = max(newest, *live, 0)
     if not equal(scanner.run(good).reports, TrackReports.joined(reports)):
-        raise Wrong("one run reports something else")
+        raise FoundError("one run reports something else")
 
 
 def run(task: tuple[int, int, int, int]) -> Report:
