@@ -5,7 +5,8 @@ least sum of squared distances. A track without a pair is *false*, and *fast* wh
 over its last seconds, whatever its tracker says of its kind.
 
 In a recording the truth is not complete: there are moored boats, a shore, and others that sail by.
-There a track farther than the cutoff from every true target does not count in OSPA.
+There a track farther than the cutoff from every true target does not count in OSPA, and only such a
+track is false.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Rule:
     reach : float
         Greatest distance of a pair (m).
     fast, window : float
-        Speed from which a track is fast (m/s), over its last seconds (s).
+        Speed from which a track is fast (m/s), over its last seconds (s), at least half of them.
     """
 
     cutoff: float = 20.0
@@ -70,7 +71,7 @@ class Judgment:
     rmse : float
         Root mean square distance of pairs (m).
     milliseconds : float
-        Mean time of a scan.
+        Median time of a scan.
     """
 
     ospa: float
@@ -120,7 +121,8 @@ def judged(
         scans += 1
         rows = np.flatnonzero(found.time == time)
         distance = np.linalg.norm(found.position[rows][:, None] - places, axis=2)
-        counts = complete | (distance.min(axis=1, initial=np.inf) <= rule.cutoff)
+        far = distance.min(axis=1) > rule.cutoff
+        counts = complete | ~far
         ospas.append([_ospa(distance[each], rule.cutoff) for each in (counts, counts | fast[rows])])
         paired = dict(_pairs(distance, rule.reach))
         squares += [distance[row, target] ** 2 for target, row in paired.items()]
@@ -128,7 +130,9 @@ def judged(
             pairs.setdefault(name, []).append(
                 int(found.track_id[rows[paired[target]]]) if target in paired else -1
             )
-        wrong[np.delete(rows, list(paired.values()))] = True
+        unpaired = np.ones(len(rows), bool)
+        unpaired[list(paired.values())] = False
+        wrong[rows[unpaired & (complete | far)]] = True
     histories = [np.array(each) for each in pairs.values()]
     minutes = scans * period / 60
     ospa, ospa_fast = np.mean(ospas, axis=0)
@@ -143,7 +147,7 @@ def judged(
         false=float(wrong.sum()) * period / minutes,
         false_tracks=_mostly(wrong, found.track_id) / minutes,
         rmse=float(np.sqrt(np.mean(squares))) if squares else float("nan"),
-        milliseconds=1e3 * float(found.seconds.mean()),
+        milliseconds=1e3 * float(np.median(found.seconds)),
     )
 
 
@@ -155,14 +159,14 @@ def mean_judgment(each: Sequence[Judgment]) -> Judgment:
 
 
 def fast_rows(found: Followed, rule: Rule) -> Mask:
-    """Rows whose track moved fast, by its positions."""
+    """Rows whose track moved fast, by its positions; what has moved little is not fast yet."""
     fast = np.zeros(len(found.time), bool)
     for track in np.unique(found.track_id):
         rows = np.flatnonzero(found.track_id == track)
         time, place = found.time[rows], found.position[rows]
         before = np.searchsorted(time, time - rule.window)
         path = np.linalg.norm(place - place[before], axis=1)
-        fast[rows] = path > rule.fast * (time - time[before])
+        fast[rows] = path > rule.fast * np.maximum(time - time[before], rule.window / 2)
     return fast
 
 

@@ -50,13 +50,15 @@ def test_what_is_far_from_known_targets_counts_only_where_the_truth_is_complete(
 
 def test_a_false_track_that_moves_is_fast():
     near = [(t, 1, 10 * t, 0) for t in range(4)]
-    moving = followed(*near, *((t, 2, 500 + 2 * t, 0) for t in range(4)))
+    moving = followed(*near, *((t, 2, 500 + 3 * t, 0) for t in range(4)))
     figures = judged(moving, TIMES, PATH, 1.0, complete=False)
     # At its first scan it has no path yet.
     assert figures.fast == pytest.approx(45.0)
     assert figures.ospa == 0.0
     assert figures.ospa_fast == pytest.approx(3 * np.sqrt(200) / 4)
-    assert fast_rows(moving, Rule(fast=3.0)).tolist() == [False, True, True, True] + 4 * [False]
+    assert fast_rows(moving, Rule(fast=2.0, window=8.0)).tolist() == [
+        False, True, True, True, False, False, False, True
+    ]  # fmt: skip
 
 
 def test_nothing_reported():
