@@ -21,7 +21,7 @@ import numpy as np
 from benchmarks.peers import Array
 from benchmarks.ranking import lines, rounded
 from benchmarks.scan_judge import Judgment, Rule, judged
-from benchmarks.scan_peers import Setting, shipped
+from benchmarks.scan_peers import Setting, followed, shipped
 from benchmarks.work import ROOT
 from fuzzytrack.cli.output import write_json
 from fuzzytrack.json_types import plain
@@ -57,7 +57,7 @@ def truth(path: Path) -> dict[int, Array]:
 def judge(folder: Path, scanner: str = str(SCANNER)) -> tuple[Judgment, int]:
     """Figures, and how many tracks were reported."""
     found = scans(folder / "radar_plots_sim.csv")
-    tracks = shipped(scanner)(found, Setting(PERIOD))
+    tracks = followed(shipped(scanner), found, Setting(PERIOD))
     times = [scan.time for scan in found]
     figures = judged(
         tracks, times, truth(folder / "truth_1s.csv"), PERIOD, complete=True, rule=RULE

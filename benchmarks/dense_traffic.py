@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.ranking import Table, lines, rounded
 from benchmarks.scan_judge import Rule
-from benchmarks.scan_peers import CONFIGURATIONS, Peer, Setting, shipped
+from benchmarks.scan_peers import CONFIGURATIONS, Peer, Setting, followed, shipped
 from benchmarks.scan_traffic import Traffic, traffic
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.json_types import plain
@@ -35,7 +35,7 @@ class Shares:
 
 
 def shares(peer: Peer, world: Traffic) -> Shares:
-    found = peer(world.scans, Setting(1.678, bearing_noise=0.0))
+    found = followed(peer, world.scans, Setting(1.678, bearing_noise=0.0))
     tracks = found.position[found.time == world.scans[-1].time]
     pairs = matched(tracks, world.truth[-1])
     return Shares(pairs / len(world.truth[-1]), 1 - pairs / max(len(tracks), 1))

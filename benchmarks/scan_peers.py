@@ -12,17 +12,18 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.peers import Array, need
 from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scanners.catalog import load_scanner
 
 __all__ = [
-    "CONFIGURATIONS", "Followed", "Peer", "Setting", "norfair", "plot_covariances", "shipped",
-    "stonesoup",
+    "CONFIGURATIONS", "Followed", "Peer", "Setting", "Steps", "followed", "norfair",
+    "plot_covariances", "shipped", "stonesoup",
 ]  # fmt: skip
 
 #: Configurations of scan trackers that come with the package.
@@ -81,15 +82,49 @@ class Followed(NamedTuple):
     seconds: Array
 
 
-Clock = Callable[[], float]
+Shown = tuple[NDArray[np.int64], Array]
 
 
-class Peer(Protocol):
-    """A tracker that follows scans; seconds are those of the clock."""
+class Steps(NamedTuple):
+    """A tracker at work: what it gives scan by scan, and the tracks in that.
 
-    def __call__(
-        self, scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
-    ) -> Followed: ...
+    Attributes
+    ----------
+    each : iterator
+        Of what the tracker gives, one scan after another as it is asked.
+    shown : callable
+        From that to identities, shape (n,), and positions, shape (n, 2).
+    """
+
+    each: Iterator[Any]
+    shown: Callable[[Any], Shown]
+
+
+Peer = Callable[[Sequence[Scan], Setting], Steps]
+
+
+def followed(
+    peer: Peer,
+    scans: Sequence[Scan],
+    setting: Setting,
+    clock: Callable[[], float] = time.perf_counter,
+) -> Followed:
+    """Let a tracker follow scans; its seconds are those of the clock."""
+    steps = peer(scans, setting)
+    seconds, found = np.empty(len(scans)), [(np.empty(0, np.int64), np.empty((0, 2)))]
+    for k in range(len(scans)):
+        begin = clock()
+        step = next(steps.each)
+        seconds[k] = clock() - begin
+        found.append(steps.shown(step))
+    identities, positions = (np.concatenate(each) for each in zip(*found, strict=True))
+    counts = [len(each) for each, _ in found[1:]]
+    times = np.repeat([scan.time for scan in scans], counts)
+    return Followed(times, identities, positions, seconds)
+
+
+def _shown(tracks: Mapping[int, Array]) -> Shown:
+    return np.array(list(tracks), np.int64), np.array(list(tracks.values())).reshape(-1, 2)
 
 
 def plot_covariances(scan: Scan, setting: Setting) -> Array:
@@ -115,44 +150,16 @@ def plot_covariances(scan: Scan, setting: Setting) -> Array:
     return np.asarray(found)
 
 
-def _timed(
-    steps: Iterator[Any],
-    shown: Callable[[Any], Mapping[int, Array]],
-    scans: Sequence[Scan],
-    clock: Clock,
-) -> Followed:
-    rows: list[tuple[float, int, Array]] = []
-    seconds = np.empty(len(scans))
-    for k, scan in enumerate(scans):
-        begin = clock()
-        step = next(steps)
-        seconds[k] = clock() - begin
-        rows += [(scan.time, track, where) for track, where in shown(step).items()]
-    times, tracks, places = zip(*rows, strict=True) if rows else ((), (), ())
-    return Followed(
-        np.array(times, float), np.array(tracks, np.int64),
-        np.array(places, float).reshape(-1, 2), seconds,
-    )  # fmt: skip
-
-
 # -------------------------------------------------------------------- fuzzytrack
 
 
 def shipped(name: str, tracker: str | None = None) -> Peer:
     """A shipped configuration, which has its own numbers; maybe with another tracker in it."""
-    from fuzzytrack.scan.catalog import load_scanner
-
     scanner = load_scanner(name)
 
-    def follow(
-        scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
-    ) -> Followed:
+    def follow(scans: Sequence[Scan], setting: Setting) -> Steps:
         session = scanner.start()
-
-        def shown(step: Any) -> Mapping[int, Array]:
-            return dict(zip(step.track_id.tolist(), step.position, strict=True))
-
-        return _timed(map(session.step, scans), shown, scans, clock)
+        return Steps(map(session.step, scans), lambda step: (step.track_id, step.position))
 
     return follow
 
@@ -170,22 +177,19 @@ def stonesoup(association: str) -> Peer:
     noise, and are searched in a KD-tree.
     """
 
-    def follow(
-        scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
-    ) -> Followed:
+    def follow(scans: Sequence[Scan], setting: Setting) -> Steps:
         detections = _detections(scans, setting)
         tracker = _tracker(association, detections, setting)
         numbers: dict[str, int] = {}
 
-        def shown(step: Any) -> Mapping[int, Array]:
-            return {
-                numbers.setdefault(track.id, len(numbers) + 1): np.array(
-                    track.state.mean[[0, 2], 0], float
-                )
-                for track in step[1]
-            }
+        def shown(step: Any) -> Shown:
+            tracks = ((track.id, track.state.mean[[0, 2], 0]) for track in step[1])
+            return _shown({
+                numbers.setdefault(name, len(numbers) + 1): np.array(place, float)
+                for name, place in tracks
+            })  # fmt: skip
 
-        return _timed(iter(tracker), shown, scans, clock)
+        return Steps(iter(tracker), shown)
 
     return follow
 
@@ -269,9 +273,7 @@ def _joint(association: str, predictor: Any, updater: Any, setting: Setting) -> 
 # -------------------------------------------------------------------- norfair
 
 
-def norfair(
-    scans: Sequence[Scan], setting: Setting, clock: Clock = time.perf_counter, /
-) -> Followed:
+def norfair(scans: Sequence[Scan], setting: Setting) -> Steps:
     """Norfair, made for pictures: fixed noise, greedy pairs by distance, scans of equal period.
 
     It is given its units as they are, one step a scan; its gate is the distance in meters that
@@ -295,11 +297,7 @@ def norfair(
         ),
     )  # fmt: skip
 
-    def steps() -> Iterator[Any]:
-        for plots in detections:
-            yield tracker.update(detections=plots)
+    def shown(step: Any) -> Shown:
+        return _shown({each.id: np.array(each.estimate[0], float) for each in step})
 
-    def shown(step: Any) -> Mapping[int, Array]:
-        return {each.id: np.array(each.estimate[0], float) for each in step}
-
-    return _timed(steps(), shown, scans, clock)
+    return Steps((tracker.update(detections=plots) for plots in detections), shown)

@@ -25,7 +25,15 @@ import numpy as np
 from benchmarks.peers import Array
 from benchmarks.ranking import Table, lines, rounded
 from benchmarks.scan_judge import Judgment, judged
-from benchmarks.scan_peers import CONFIGURATIONS, Followed, Peer, Setting, shipped, stonesoup
+from benchmarks.scan_peers import (
+    CONFIGURATIONS,
+    Followed,
+    Peer,
+    Setting,
+    followed,
+    shipped,
+    stonesoup,
+)
 from fuzzytrack.cli.output import progress, write_json
 from fuzzytrack.json_types import plain
 from fuzzytrack.simulation.scene import (
@@ -41,10 +49,10 @@ from fuzzytrack.simulation.scene import (
 
 PERIOD, NOISE, SHIPS, SCANS = 1.678, 1.2, 200, 30
 AREA = 50_000.0
-#: Chosen of some on seed 1000: 5 hits, and one scan without a plot ends a track that has fewer.
+#: Chosen of some on seed 1000; one scan without a plot ends a track that has fewer hits.
 SETTING = Setting(
     PERIOD, range_noise=NOISE, bearing_noise=0.0, extra_noise=0.0, acceleration=0.2, speed=3.0,
-    detection=0.9, clutter=5 / AREA, hits=5, tentative_misses=1, misses=4,
+    detection=0.9, clutter=5 / AREA, hits=4, tentative_misses=1, misses=4,
 )  # fmt: skip
 #: Association of a peer by its name here: exact joint association does not end with 200 tracks.
 ASSOCIATIONS = {"GNN": "GNN", "JPDA": "JPDA by propagation"}
@@ -80,12 +88,12 @@ def paths(world: SimulatedScans) -> dict[int, Array]:
     return {int(each): rows[truth.target_id == each] for each in np.unique(truth.target_id)}
 
 
-def followed(name: str, peer: Peer, world: SimulatedScans, file: Path | None) -> Followed:
+def kept_or_followed(peer: Peer, world: SimulatedScans, file: Path | None) -> Followed:
     """Tracks of a tracker, from a file if they are there."""
     if file and file.exists():
         with np.load(file) as kept:
             return Followed(**kept)
-    found = peer(world.scans, SETTING)
+    found = followed(peer, world.scans, SETTING)
     if file:
         file.parent.mkdir(parents=True, exist_ok=True)
         np.savez_compressed(file, **found._asdict())
@@ -100,7 +108,7 @@ def measured(peers: Mapping[str, Peer], seeds: int, keep: Path | None) -> dict[s
             times, truth = [scan.time for scan in world.scans], paths(world)
             for name, peer in peers.items():
                 file = keep / f"{name.replace(' ', '-')}-{seed}.npz" if keep else None
-                found = followed(name, peer, world, file)
+                found = kept_or_followed(peer, world, file)
                 figures[name].append(judged(found, times, truth, PERIOD, complete=True))
             watch((seed + 1) / seeds)
     return figures

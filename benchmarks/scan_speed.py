@@ -30,7 +30,7 @@ import numpy as np
 from benchmarks.machine import describe
 from benchmarks.ranking import Table, lines, markdown, rounded
 from benchmarks.report import NotMeasured
-from benchmarks.scan_peers import Peer, Setting, norfair, shipped, stonesoup
+from benchmarks.scan_peers import Peer, Setting, followed, norfair, shipped, stonesoup
 from benchmarks.scan_traffic import traffic
 from benchmarks.work import ROOT
 from fuzzytrack.cli.output import write_json
@@ -83,13 +83,16 @@ def cost(name: str, ships: int, area: float, scans: int, cpu: bool) -> Cost:
     peer, setting = peer_of(name), Setting(1.678, range_noise=1.0, bearing_noise=0.0)
     clock = time.process_time if cpu else time.perf_counter
     clutter = 2.0 if ships == HARBOR else 1.0
-    peer(traffic(HARBOR, area, scans=3).scans, setting, clock)
+    followed(peer, traffic(HARBOR, area, scans=3).scans, setting)
     world = traffic(ships, area, scans=scans, clutter=clutter)
     before = _memory(restart=True)
-    found = peer(world.scans, setting, clock)
-    peak = _memory()
-    last = 1e3 * found.seconds[-LAST:]
-    tracks = int((found.time == world.scans[-1].time).sum())
+    steps, seconds, step = peer(world.scans, setting), [], None
+    for _ in world.scans:
+        begin = clock()
+        step = next(steps.each)
+        seconds.append(clock() - begin)
+    peak, last = _memory(), 1e3 * np.array(seconds[-LAST:])
+    tracks = len(steps.shown(step)[0])
     return Cost(name, ships, float(np.median(last)), float(last.max()), peak - before, tracks)
 
 

@@ -7,13 +7,20 @@ import pytest
 
 from benchmarks import aircraft, autoferry, dense_traffic, scan_rivals, scan_speed
 from benchmarks.scan_judge import Rule, fast_rows, judged, mean_judgment
-from benchmarks.scan_peers import Followed, Setting, plot_covariances, shipped, stonesoup
+from benchmarks.scan_peers import (
+    Followed,
+    Setting,
+    followed,
+    plot_covariances,
+    shipped,
+    stonesoup,
+)
 from benchmarks.scan_speed import Cost, exponents
 from benchmarks.scan_traffic import traffic
 from fuzzytrack.scan.scan import Scan
 
 
-def followed(*rows):
+def tracks_of(*rows):
     """Tracks of rows (time, identity, x, y)."""
     values = np.array(rows, float).reshape(-1, 4)
     return Followed(values[:, 0], values[:, 1].astype(np.int64), values[:, 2:], np.full(4, 0.002))
@@ -24,7 +31,7 @@ PATH = {7: np.array([[0.0, 0.0, 0.0], [3.0, 30.0, 0.0]])}
 
 
 def test_a_track_that_is_late_lost_and_taken_over():
-    found = followed((1, 4, 10, 3), (2, 4, 20, 80), (3, 5, 30, 4))
+    found = tracks_of((1, 4, 10, 3), (2, 4, 20, 80), (3, 5, 30, 4))
     figures = judged(found, TIMES, PATH, 1.0, complete=True)
     # Nothing, 3 m, a false track 80 m away, and 4 m.
     assert figures.ospa == pytest.approx((20 + 3 + 20 + 4) / 4)
@@ -39,7 +46,7 @@ def test_a_track_that_is_late_lost_and_taken_over():
 
 def test_what_is_far_from_known_targets_counts_only_where_the_truth_is_complete():
     near = [(t, 1, 10 * t, 0) for t in range(4)]
-    still = followed(*near, *((t, 2, 500, 500) for t in range(4)))
+    still = tracks_of(*near, *((t, 2, 500, 500) for t in range(4)))
     assert judged(still, TIMES, PATH, 1.0, complete=False).ospa == 0.0
     # One track too many: sqrt(20²/2).
     counted = judged(still, TIMES, PATH, 1.0, complete=True)
@@ -50,7 +57,7 @@ def test_what_is_far_from_known_targets_counts_only_where_the_truth_is_complete(
 
 def test_a_false_track_that_moves_is_fast():
     near = [(t, 1, 10 * t, 0) for t in range(4)]
-    moving = followed(*near, *((t, 2, 500 + 3 * t, 0) for t in range(4)))
+    moving = tracks_of(*near, *((t, 2, 500 + 3 * t, 0) for t in range(4)))
     figures = judged(moving, TIMES, PATH, 1.0, complete=False)
     # At its first scan it has no path yet.
     assert figures.fast == pytest.approx(45.0)
@@ -62,7 +69,7 @@ def test_a_false_track_that_moves_is_fast():
 
 
 def test_nothing_reported():
-    figures = judged(followed(), TIMES, PATH, 1.0, complete=True)
+    figures = judged(tracks_of(), TIMES, PATH, 1.0, complete=True)
     assert (figures.ospa, figures.tracked, figures.delay) == (20.0, 0.0, 4.0)
     assert np.isnan(figures.rmse)
 
@@ -70,13 +77,13 @@ def test_nothing_reported():
 def test_pairs_are_one_to_one_and_as_many_as_can_be():
     """Near both tracks, the first target takes the one that the second cannot."""
     path = {1: np.array([[0, 0, 0], [3, 0, 0.0]]), 2: np.array([[0, 14, 0], [3, 14, 0.0]])}
-    found = followed((0, 1, 1, 0), (0, 2, -14, 0))
+    found = tracks_of((0, 1, 1, 0), (0, 2, -14, 0))
     assert judged(found, [0.0], path, 1.0, complete=True).tracked == 1.0
 
 
 def test_means():
-    one = judged(followed(), TIMES, PATH, 1.0, complete=True)
-    two = judged(followed((1, 4, 10, 3)), TIMES, PATH, 1.0, complete=True)
+    one = judged(tracks_of(), TIMES, PATH, 1.0, complete=True)
+    two = judged(tracks_of((1, 4, 10, 3)), TIMES, PATH, 1.0, complete=True)
     assert mean_judgment([one, two]).tracked == pytest.approx(0.125)
 
 
@@ -217,7 +224,7 @@ def test_peers_follow_a_ship():
     times = [scan.time for scan in world.scans]
     peers = {name: stonesoup(name) for name in ("GNN", "JPDA", "JPDA by propagation")}
     for peer in (*peers.values(), shipped("default")):
-        found = peer(world.scans, setting)
+        found = followed(peer, world.scans, setting)
         figures = judged(found, times, world.paths(), 1.678, complete=True)
         assert figures.tracked > 0.6
         assert figures.rmse < 3
