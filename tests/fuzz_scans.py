@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
-from fuzzytrack.scan.catalog import load_scanner
+from fuzzytrack.scan.scanners.catalog import load_scanner
 
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import TrackReports
@@ -111,7 +111,7 @@ def own_times(rng: Rng, scan: Scan, _crowd: int) -> Scan:
 
 
 def wrong_shape(rng: Rng, scan: Scan, _crowd: int) -> Scan:
-    shapes = (np.zeros(3), np.zeros((2, 3)), np.zeros((1, 2, 1)), np.float64(1.0))
+    shapes = (np.zeros(3), np.zeros((2, 3)), np.zeros((1, 2, 1)))
     return replace(scan, positions=shapes[rng.integers(len(shapes))])
 
 
