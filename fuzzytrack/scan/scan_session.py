@@ -45,7 +45,14 @@ from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scan_parts import ScanParts
 from fuzzytrack.scan.scan_pass import PAIRS, scan_pass
 from fuzzytrack.scan.stages.pairs import MORE_EDGES
-from fuzzytrack.scan.stages.plots import BAD_COVARIANCE, BAD_POSITION, BAD_TIME, DONE, LARGEST
+from fuzzytrack.scan.stages.plots import (
+    BAD_COVARIANCE,
+    BAD_POSITION,
+    BAD_TIME,
+    DONE,
+    LARGEST,
+    NO_NOISE,
+)
 from fuzzytrack.scan.track_columns import ID, PLOT, STATUS
 from fuzzytrack.scan.track_reports import TrackReports
 from fuzzytrack.scan.workspace import LASTING, Workspace, new_workspace, with_room
@@ -377,6 +384,12 @@ def _complaint(answer: int, scan: Scan, j: int) -> DataError:
         return DataError(f"{plot}: position ({x:g}, {y:g}) m; needs numbers below {LARGEST:g}")
     if answer == BAD_TIME and scan.times is not None:
         return DataError(f"{plot}: time {scan.times[j]:g} s; none may be later than the scan")
+    if answer == NO_NOISE:
+        distance = float(np.hypot(*(scan.positions[j] - np.asarray(scan.own))))
+        return DataError(
+            f"{plot}: {distance:g} m from the radar, where its noise across the line of sight is "
+            "too large for the numbers here; are the positions in meters?"
+        )
     assert answer == BAD_COVARIANCE
     assert scan.covariances is not None
     values = ", ".join(f"{value:g}" for value in scan.covariances[j])

@@ -39,10 +39,14 @@ from fuzzytrack.scan.plot_columns import (
 )
 from fuzzytrack.scan.sensor import NoiseKernel
 
-__all__ = ["BAD_COVARIANCE", "BAD_POSITION", "BAD_TIME", "DONE", "density_stage", "plots_stage"]
+__all__ = [
+    "BAD_COVARIANCE", "BAD_POSITION", "BAD_TIME", "DONE", "NO_NOISE", "density_stage",
+    "plots_stage",
+]  # fmt: skip
 
-#: Answers of a stage: done, or what is wrong with the plot that ``WHERE`` names.
-DONE, BAD_POSITION, BAD_COVARIANCE, BAD_TIME = 0, 1, 2, 3
+#: Answers of a stage: done, or what is wrong with the plot that ``WHERE`` names. It has no noise
+#: where it is so far away that along and across differ by more than numbers can hold.
+DONE, BAD_POSITION, BAD_COVARIANCE, BAD_TIME, NO_NOISE = 0, 1, 2, 3, 5
 
 #: Coordinates (m) and variances (m²) beyond it are refused: cells are counted in whole numbers.
 LARGEST = 1e12
@@ -76,6 +80,8 @@ def plots_stage(
                     return BAD_COVARIANCE
             else:
                 r11, r12, r22 = noise(x, y, own_x, own_y)
+                if not r12 * r12 < r11 * r22:
+                    return NO_NOISE
             given[j, PLOT_X], given[j, PLOT_Y], given[j, PLOT_TIME] = x, y, time
             given[j, R11], given[j, R12], given[j, R22] = r11, r12, r22
             given[j, PLOT_ROW] = j
