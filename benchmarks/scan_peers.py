@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import Any, NamedTuple
 
@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 
 from benchmarks.peers import Array, need
 from fuzzytrack.scan.scan import Scan
-from fuzzytrack.scan.scanners.catalog import load_scanner
+from fuzzytrack.scan.scanners.catalog import as_scanner
+from fuzzytrack.scan.scanners.loading import shipped_scanners
+from fuzzytrack.scan.update.base import updates
 
 __all__ = [
     "CONFIGURATIONS", "Followed", "Peer", "Setting", "Steps", "followed", "norfair",
@@ -27,7 +29,7 @@ __all__ = [
 ]  # fmt: skip
 
 #: Configurations of scan trackers that come with the package.
-CONFIGURATIONS = ("default", "fading", "zhang-jiang", "zhang-jiang-safe", "m-of-n")
+CONFIGURATIONS = shipped_scanners()
 
 
 _BEGIN = datetime(2000, 1, 1)
@@ -155,7 +157,9 @@ def plot_covariances(scan: Scan, setting: Setting) -> Array:
 
 def shipped(name: str, tracker: str | None = None) -> Peer:
     """A shipped configuration, which has its own numbers; maybe with another tracker in it."""
-    scanner = load_scanner(name)
+    scanner = as_scanner(name)
+    if tracker:
+        scanner = replace(scanner, update=updates.get("tracker")(tracker))
 
     def follow(scans: Sequence[Scan], setting: Setting) -> Steps:
         session = scanner.start()

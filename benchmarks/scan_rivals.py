@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import asdict, replace
@@ -107,11 +108,15 @@ def measured(peers: Mapping[str, Peer], seeds: int, keep: Path | None) -> dict[s
             world = traffic(seed)
             times, truth = [scan.time for scan in world.scans], paths(world)
             for name, peer in peers.items():
-                file = keep / f"{name.replace(' ', '-')}-{seed}.npz" if keep else None
+                file = keep / f"{file_name(name)}-{seed}.npz" if keep else None
                 found = kept_or_followed(peer, world, file)
                 figures[name].append(judged(found, times, truth, PERIOD, complete=True))
             watch((seed + 1) / seeds)
     return figures
+
+
+def file_name(tracker: str) -> str:
+    return re.sub(r"\W+", "-", tracker)
 
 
 def mean_and_error(values: Array) -> tuple[float, float]:

@@ -19,12 +19,13 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
-from fuzzytrack.scan.scanners.catalog import load_scanner
 
 from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scanners.catalog import load_scanner
+from fuzzytrack.scan.scanners.loading import shipped_scanners
 from fuzzytrack.scan.track_reports import TrackReports
 
-CONFIGURATIONS = ("default", "fading", "zhang-jiang", "zhang-jiang-safe", "m-of-n")
+CONFIGURATIONS = shipped_scanners()
 # Recordings of a task; CPU seconds of one; MiB of the process.
 CHUNK, SECONDS, MEBIBYTES = 20, 30.0, 1500
 #: Plots of the largest scans.

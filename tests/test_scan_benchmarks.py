@@ -151,12 +151,12 @@ def harbor(folder):
 
 def test_the_harbor_script(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(autoferry, "CONFIGURATIONS", ("default",))
-    monkeypatch.setattr(autoferry, "TRACKERS", {"fixed": "fixed:alpha=.5:beta=.2"})
+    monkeypatch.setattr(autoferry, "TRACKERS", {})
     harbor(tmp_path / "data")
     out = tmp_path / "figures.json"
     assert autoferry.main([str(tmp_path / "data"), "-o", str(out)]) == 0
     told, printed = json.loads(out.read_text()), capsys.readouterr().out
-    assert list(told) == ["default", "default, fixed"]
+    assert list(told) == ["default"]
     for each in told.values():
         assert list(each) == ["2", "4", "16", "mean"]
         assert each["mean"]["tracked"] > 0.7
@@ -165,7 +165,7 @@ def test_the_harbor_script(monkeypatch, tmp_path, capsys):
 
 
 def test_the_script_of_crowded_water(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr(scan_rivals, "CONFIGURATIONS", ("default", "m-of-n"))
+    monkeypatch.setattr(scan_rivals, "CONFIGURATIONS", ("default", "default:sensor.period=1.678"))
     monkeypatch.setattr(
         scan_rivals, "traffic", lambda seed, real=scan_rivals.traffic: real(seed, 8, 12)
     )
@@ -174,7 +174,7 @@ def test_the_script_of_crowded_water(monkeypatch, tmp_path, capsys):
     assert scan_rivals.main(arguments) == 0
     first = out.read_text()
     assert {each.name for each in kept.iterdir()} == {
-        f"{name}-{seed}.npz" for name in ("default", "m-of-n") for seed in (0, 1)
+        f"{name}-{seed}.npz" for name in ("default", "default-sensor-period-1-678") for seed in (0, 1)
     }
     assert "minus default" in capsys.readouterr().out
     # From what is kept, the same comes out.
