@@ -173,8 +173,9 @@ def test_the_script_of_crowded_water(monkeypatch, tmp_path, capsys):
     arguments = ["--seeds", "2", "--keep", str(kept), "-o", str(out)]
     assert scan_rivals.main(arguments) == 0
     first = out.read_text()
+    names = ("default", "default-sensor-period-1-678")
     assert {each.name for each in kept.iterdir()} == {
-        f"{name}-{seed}.npz" for name in ("default", "default-sensor-period-1-678") for seed in (0, 1)
+        f"{name}-{seed}.npz" for name in names for seed in (0, 1)
     }
     assert "minus default" in capsys.readouterr().out
     # From what is kept, the same comes out.
