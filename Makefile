@@ -113,7 +113,7 @@ bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (
 # ---------------------------------------------------------------- tidying
 
 clean: ## Remove what was built, but keep .venv
-	rm -rf build dist demo docs/_build docs/gallery docs/cli-reference.md docs/pictures docs/pictures.md docs/api/generated docs/sg_execution_times.rst
+	rm -rf build dist demo docs/_build docs/gallery docs/cli-reference.md docs/scene-settings.md docs/pictures docs/pictures.md docs/api/generated docs/sg_execution_times.rst
 	rm -rf .coverage .coverage.* .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -path './$(VENV)' -prune -o -name __pycache__ -type d -prune -exec rm -rf {} +
 

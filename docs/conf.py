@@ -30,6 +30,7 @@ extensions = [
     "mathml",
     "pictures",
     "cli_reference",
+    "scene_settings",
     "numpydoc",
     "myst_parser",
     "sphinx_design",

@@ -80,7 +80,9 @@ class Population:
         position, velocity = paths.at(target, view.times[scan])
         leaves = np.array([each.leaves == "yes" for each in scene.traffic.values()], bool)
         if leaves.any():
-            stays = _stays(view, scan, target, position, leaves[group], len(born))
+            start, _ = paths.at(np.arange(len(born)), born)
+            began_inside = view.region.holds(start)
+            stays = _stays(view, scan, target, position, leaves[group], began_inside)
             scan, target = scan[stays], target[stays]
             position, velocity = position[stays], velocity[stays]
         return cls(paths, born, group, tuple(scene.traffic), scan, target, position, velocity)
@@ -96,13 +98,18 @@ def _refuse_too_many(scene: Scene, duration: float, scans: int) -> None:
 
 
 def _stays(
-    view: View, scan: Whole, target: Whole, position: Array, leaves: NDArray[np.bool_], n: int
+    view: View,
+    scan: Whole,
+    target: Whole,
+    position: Array,
+    leaves: NDArray[np.bool_],
+    began_inside: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
     """Which states come before their target, having been in the region, left it."""
     inside = view.region.holds(position)
-    first_inside = np.full(n, len(view.times))
+    first_inside = np.where(began_inside, -1, len(view.times))
     np.minimum.at(first_inside, target[inside], scan[inside])
     out = ~inside & (scan > first_inside[target]) & leaves[target]
-    left = np.full(n, len(view.times))
+    left = np.full(len(leaves), len(view.times))
     np.minimum.at(left, target[out], scan[out])
     return np.asarray(scan < left[target])

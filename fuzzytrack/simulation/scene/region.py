@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.simulation.scene.settings import Settings, setting
 
-__all__ = ["Region"]
+__all__ = ["SHAPES", "Region"]
 
-_SHAPES = ("disc", "square", "polygon", "area_each")
+#: Settings of which a region has exactly one.
+SHAPES = ("disc", "square", "polygon", "area_each")
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,10 +52,10 @@ class Region(Settings):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        given = [name for name in _SHAPES if getattr(self, name) is not None]
+        given = [name for name in SHAPES if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
-                f"region must have exactly one of {', '.join(_SHAPES)}, got "
+                f"region must have exactly one of {', '.join(SHAPES)}, got "
                 f"{' and '.join(given) or 'none'}"
             )
         if self.disc is not None and self.disc[0] == self.disc[1]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
-from fuzzytrack.reprs import constructor_code
+from fuzzytrack.reprs import call
 from fuzzytrack.scan.part import Parameter
 
 __all__ = ["FORMS", "Setting", "Settings", "setting", "settings_of"]
@@ -86,19 +86,18 @@ class Setting:
             raise ValueError(f"{name} must be {self._allowed()}, got {self._shown(value)}")
         return float(number)
 
-    def _allowed(self) -> str:
-        """Allowed values, in the unit of files."""
+    def limits_in_file(self) -> Parameter:
+        """Limits of its numbers in files."""
         factor = self.in_file
         if factor == 1:
-            return self.limits.allowed
-        in_degrees = Parameter(
-            "",
-            least=round(self.limits.least / factor, 9),
-            most=round(self.limits.most / factor, 9),
-            above=self.limits.above,
-            below=self.limits.below,
-        )
-        return f"{in_degrees.allowed} ({self.file_unit})"
+            return self.limits
+        least, most = (round(end / factor, 9) for end in (self.limits.least, self.limits.most))
+        return replace(self.limits, least=least, most=most)
+
+    def _allowed(self) -> str:
+        """Allowed values, in the unit of files."""
+        unit = f" ({self.file_unit})" if self.in_file != 1 else ""
+        return f"{self.limits_in_file().allowed}{unit}"
 
     def _shown(self, value: Any) -> str:
         plain = isinstance(value, int | float) and not isinstance(value, bool)
@@ -185,7 +184,9 @@ class Settings:
                 raise ValueError(f"{name} must be given")
 
     def __repr__(self) -> str:
-        return constructor_code(self)
+        shown = {each.name: (getattr(self, each.name), each.default) for each in fields(self)}
+        given = {name: value for name, (value, default) in shown.items() if value != default}
+        return call(type(self).__name__, [], given)
 
 
 def settings_of(part: type[Settings]) -> dict[str, Setting]:
