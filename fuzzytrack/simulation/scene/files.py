@@ -169,7 +169,9 @@ def _change(document: Document, path: list[str], text: str) -> None:
     """Put a value in its place in a document that was read without complaint."""
     node = document.root
     for depth, word in enumerate(path):
-        if not isinstance(node, Mapping) or not word:
+        if not word:
+            raise ScenarioError("a name is missing between two points")
+        if not isinstance(node, Mapping):
             raise ScenarioError(f"{'.'.join(path[:depth])} has no settings of its own")
         if word not in node.entries or depth == len(path) - 1:
             if depth == 0 and word not in ("region", "own", "clutter"):

@@ -24,6 +24,9 @@ FORMAT_VERSION = "1"
 _REQUIRED = ("scenario", "name", "scans", "radar", "traffic")
 _OPTIONAL = ("source", "region", "own", "clutter")
 
+# Other programs write truth values so.
+_TRUTH = {"true": "yes", "false": "no"}
+
 SomeSettings = TypeVar("SomeSettings", bound=Settings)
 
 
@@ -131,6 +134,9 @@ class SceneReader:
         if declared.form == "part":
             return self._part(node, name, Region)
         if declared.form == "word":
+            word = self.document.text(node, name)
+            if word in _TRUTH and _TRUTH[word] in declared.words:
+                return _TRUTH[word]
             return self.document.choice(node, name, declared.words)
         if declared.form in ("number", "whole") or not isinstance(node, Sequence):
             if declared.form in ("point", "points"):
