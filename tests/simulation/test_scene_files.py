@@ -339,7 +339,10 @@ def values(declared):
 @given(data=st.data())
 def test_what_is_written_is_read(data):
     """Any allowed values of the radar and of the scans are read as they were written."""
-    for role, part, needed in (("radar", Radar, {"reach"}), ("scans", ScanTimes, {"count", "period"})):
+    for role, part, needed in (
+        ("radar", Radar, {"reach"}),
+        ("scans", ScanTimes, {"count", "period"}),
+    ):
         chosen = {
             name: data.draw(values(declared), name)
             for name, declared in settings_of(part).items()
