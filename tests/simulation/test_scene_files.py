@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -376,3 +377,13 @@ def test_any_text_is_read_or_refused(inserted, at, removed):
 def test_the_schema_has_every_kind_of_clutter():
     kinds = scene_schema()["properties"]["clutter"]["additionalProperties"]["oneOf"]
     assert [each["properties"]["kind"]["const"] for each in kinds] == list(CLUTTER)
+
+
+def test_the_example_of_the_page_is_read_and_its_error_is_the_one_shown():
+    page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text("utf-8")
+    (text,) = re.findall(r"```yaml\n(.*?)```", page, flags=re.S)
+    assert simulate_scans(loads_scene(text)).truth.n_targets > 10
+    (shown,) = re.findall(r"```text\n(bay.yaml.*)\n```", page)
+    assert refused(text.replace("0.95", "1.95")) == shown
+    (table,) = re.findall(r"\| Scene \| Is \|\n\|---\|---\|\n(.*?)\n\n", page, flags=re.S)
+    assert sorted(re.findall(r"^\| `([\w-]+)`", table, flags=re.M)) == list(shipped_scenes())
