@@ -13,7 +13,14 @@ from fuzzytrack.io.description import PlotDescription, texts
 from fuzzytrack.io.table import Kind
 from fuzzytrack.yamltree import suggestion
 
-__all__ = ["Columns", "PositionKind", "choose_columns", "looks_like_angle", "looks_like_identity"]
+__all__ = [
+    "Columns",
+    "PositionKind",
+    "choose_columns",
+    "looks_like_angle",
+    "looks_like_identity",
+    "time_columns",
+]
 
 PositionKind = Literal["cartesian", "polar", "geodetic", "angle"]
 
@@ -167,7 +174,7 @@ def choose_columns(
         If there are no such columns, two could be meant, or one would serve twice.
     """
     said = description or PlotDescription()
-    date, time = _time_columns(names, said, file)
+    date, time = time_columns(names, said, file)
     id = "" if said.id is None else known(names, said.id, "id", file)
     position, read = _position(names, said, file, units or {})
     axes = _NAMES.get(position, read)[: len(read)]
@@ -198,7 +205,8 @@ def known(names: tuple[str, ...], name: str, argument: str, file: str) -> str:
 # -------------------------------------------------------------------- time
 
 
-def _time_columns(names: tuple[str, ...], said: PlotDescription, file: str) -> tuple[str, str]:
+def time_columns(names: tuple[str, ...], said: PlotDescription, file: str) -> tuple[str, str]:
+    """Columns of the date, empty if there is none, and of the time; raises as `choose_columns`."""
     if isinstance(said.time, tuple):
         date, time = (known(names, name, "time", file) for name in said.time)
         return date, time

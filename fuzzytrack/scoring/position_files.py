@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.column_names import plain_name
-from fuzzytrack.io.columns import choose_columns, known, looks_like_identity
+from fuzzytrack.io.columns import choose_columns, known, looks_like_identity, time_columns
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.findings import Findings
@@ -198,7 +198,7 @@ def _others(
 def _velocity_of(axis: str, names: tuple[str, ...]) -> str:
     """Column of the velocity along an axis, by its usual names; empty if there is none."""
     plain = plain_name(axis)[0]
-    wanted = (f"v{axis}", f"v{plain}", f"v_{plain}", f"{plain}_velocity")
+    wanted = (f"{axis}_velocity", f"v{axis}", f"v{plain}", f"v_{plain}", f"{plain}_velocity")
     for word in wanted:
         for name in names:
             if word.lower() in (name.lower(), plain_name(name)[0]):
@@ -288,7 +288,8 @@ def read_times(
     of_tracks : TableOptions, optional
         What the columns of that are; those of time and group have the same names in both.
     time : str, optional
-        Column of time in the table of scans, if it has another name there.
+        Column of time in the table of scans. Unless given, it is called as in that of tracks, or
+        has a usual name.
 
     Raises
     ------
@@ -299,11 +300,12 @@ def read_times(
     """
     options = of_tracks or TableOptions()
     files = _opened(tracks, "tracks", options).files
-    column, clock = time or files.columns.time, files.decoder.clock
+    clock = files.decoder.clock
     chosen: dict[str, Kind] = {}
 
     def wanted(names: tuple[str, ...]) -> Mapping[str, Kind]:
-        chosen[known(names, column, "time", str(file))] = "time"
+        column = time or (files.columns.time if files.columns.time in names else None)
+        chosen[time_columns(names, PlotDescription(time=column), str(file))[1]] = "time"
         if options.group is not None:
             chosen[known(names, options.group, "group", str(file))] = "word"
         return chosen

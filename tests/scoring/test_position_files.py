@@ -145,5 +145,7 @@ def test_times_of_scans(write):
     assert read_times(scans, tracks).tolist() == [1, 2, 3]
     other = write("when\n5\n", "other.csv")
     assert read_times(other, tracks, time="when").tolist() == [5]
-    with pytest.raises(DataError, match="`time`: no column 't'"):
+    seconds = write("run,t_s\na,4\n", "seconds.csv")
+    assert read_times(seconds, tracks).tolist() == [4]
+    with pytest.raises(DataError, match="no column t, time or timestamp"):
         read_times(other, tracks)
