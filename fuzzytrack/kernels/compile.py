@@ -16,7 +16,9 @@ from fuzzytrack.kernels.rebuild import LONG_TUPLE, fingerprint, rebuilt, rounded
 __all__ = ["compiled", "dispatcher", "entry_point"]
 
 
-def compiled(function: Callable[..., Any], *, nogil: bool = False) -> Callable[..., Any]:
+def compiled(
+    function: Callable[..., Any], *, nogil: bool = False, allocates: bool = True
+) -> Callable[..., Any]:
     """Compile a plain Python function together with the plain functions that it refers to.
 
     Helpers are found in the function's module and enclosing scope; they are compiled first. The
@@ -29,6 +31,9 @@ def compiled(function: Callable[..., Any], *, nogil: bool = False) -> Callable[.
         Function of scalars, tuples and arrays, without recursion.
     nogil : bool
         Whether other threads may run meanwhile.
+    allocates : bool
+        Whether it makes or returns arrays. One that does not need not count who uses its arrays,
+        which inner loops would do at every call of a helper.
 
     Returns
     -------
@@ -40,16 +45,21 @@ def compiled(function: Callable[..., Any], *, nogil: bool = False) -> Callable[.
     from fuzzytrack.kernels.llvm import keep_on_disk
 
     content = _Content.of(function, np.float64)
-    made = dispatcher(_prepared_copy(content), nogil=nogil)
-    keep_on_disk(made, content.digest)
+    copy = _prepared_copy(content, allocates)
+    made = dispatcher(copy, nogil=nogil, allocates=allocates)
+    keep_on_disk(made, content.digest and content.digest + _mark(allocates))
     return made
 
 
-def dispatcher(function: Callable[..., Any], *, nogil: bool = False) -> Callable[..., Any]:
+def dispatcher(
+    function: Callable[..., Any], *, nogil: bool = False, allocates: bool = True
+) -> Callable[..., Any]:
     """Numba dispatcher of a function whose helpers are compiled already; kept on no disk."""
     import numba
 
-    return numba.njit(function, error_model="numpy", nogil=nogil)  # type: ignore[no-any-return]
+    options: Any = {} if allocates else {"_nrt": False}
+    made: Any = numba.njit(function, error_model="numpy", nogil=nogil, **options)
+    return made  # type: ignore[no-any-return]
 
 
 def entry_point(function: Callable[..., Any], arguments: str, dtype: type = np.float64) -> Any:
@@ -112,34 +122,41 @@ class _Content:
         return cls(None if digest is None else kind + digest, dtype, name, function)
 
 
-def _prepared_copy(content: _Content) -> FunctionType:
+def _mark(allocates: bool) -> str:
+    """Part of what code is kept by, and of its name."""
+    return "" if allocates else "_borrowing"
+
+
+def _prepared_copy(content: _Content, allocates: bool = True) -> FunctionType:
     """Copy of a function with compiled helpers, and constants as compiled code needs them."""
     dtype = content.dtype
     copy = rebuilt(
-        content.function, lambda value: _prepared(value, dtype), literals=dtype is not np.float64
+        content.function,
+        lambda value: _prepared(value, dtype, allocates),
+        literals=dtype is not np.float64,
     )
     # Code is linked by name, and Numba numbers functions of one name within a process only: code
     # that was compiled here could be taken for other code that was read from disk.
-    copy.__qualname__ = f"{content.function.__name__}_{content.name}"
+    copy.__qualname__ = f"{content.function.__name__}_{content.name}{_mark(allocates)}"
     return copy
 
 
-def _prepared(value: Any, dtype: type) -> Any:
+def _prepared(value: Any, dtype: type, allocates: bool) -> Any:
     from fuzzytrack.kernels.llvm import word_for_compiler
 
     if isinstance(value, FunctionType):
-        return word_for_compiler(value, dtype) or _helper(_Content.of(value, dtype))
+        return word_for_compiler(value, dtype) or _helper(_Content.of(value, dtype), allocates)
     if isinstance(value, tuple) and len(value) > LONG_TUPLE:
         return table(value, dtype)
     if dtype is np.float64:
         return value
     if isinstance(value, tuple):
-        return tuple(_prepared(item, dtype) for item in value)
+        return tuple(_prepared(item, dtype, allocates) for item in value)
     return rounded(value, dtype) if isinstance(value, float) else value
 
 
 @lru_cache(maxsize=512)
-def _helper(content: _Content) -> Any:
+def _helper(content: _Content, allocates: bool) -> Any:
     from fuzzytrack.kernels.llvm import inlined
 
-    return inlined(_prepared_copy(content))
+    return inlined(_prepared_copy(content, allocates), allocates)

@@ -123,13 +123,14 @@ _INLINED: Any = {
 }  # fmt: skip
 
 
-def inlined(helper: Callable[..., Any]) -> Any:
+def inlined(helper: Callable[..., Any], allocates: bool = True) -> Any:
     """Numba dispatcher of a function that only compiled code calls.
 
     It is inlined whatever its size: a call keeps a loop from being vectorized. Code by which Python
     or C could call it is left out, which would take a quarter of the time to compile.
     """
-    return numba.njit(helper, **_INLINED)
+    options = _INLINED if allocates else {**_INLINED, "_nrt": False}
+    return numba.njit(helper, **options)
 
 
 # ---------------------------------------------------------------- words of the language

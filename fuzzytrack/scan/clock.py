@@ -10,6 +10,7 @@ __all__ = [
     "FREE",
     "HAS_COVARIANCES",
     "HAS_DUE",
+    "HAS_ROWS",
     "HAS_STARTS",
     "HAS_TIMES",
     "LAST_TIME",
@@ -23,6 +24,7 @@ __all__ = [
     "ROWS",
     "SCAN",
     "SCAN_TIME",
+    "SORTED",
     "TENTATIVE_TOO",
     "WHERE",
     "WIDEST",
@@ -56,6 +58,10 @@ TENTATIVE_TOO = 6
 HAS_COVARIANCES, HAS_TIMES, HAS_DUE, HAS_STARTS = 7, 8, 9, 10
 #: Whether a scan begins, or plots are more of the one before.
 NEW_SCAN = 11
-#: Plot, or other place, at which a stage had to stop.
+#: Plot at which a stage had to stop.
 WHERE = 12
+#: Whether the rows of reports are in the order of identities.
+SORTED = 13
+#: Whether rows of the recording are given.
+HAS_ROWS = 14
 COUNTS_WIDTH = 16

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 __all__ = [
     "DENSITY", "INNOVATION_X", "INNOVATION_Y", "LOG_DENSITY", "LOG_LIKELIHOOD", "NOISE",
-    "PLOT_ROW", "PLOT_TIME", "PLOT_WIDTH", "PLOT_X", "PLOT_Y", "R11", "R12", "R22", "STARTS",
-    "STRENGTH",
+    "PLOT_ROW", "PLOT_TIME", "PLOT_WIDTH", "PLOT_X", "PLOT_Y", "R11", "R12", "R22", "RECORDED",
+    "STARTS", "STRENGTH",
 ]  # fmt: skip
 
 #: Position (m).
@@ -18,7 +18,7 @@ R11, R12, R22 = 3, 4, 5
 NOISE = 6
 #: Density of clutter there (plots/m² and scan), and its logarithm.
 DENSITY, LOG_DENSITY = 7, 8
-#: Row of the plot among those that were given.
+#: Row of the plot among those of the scan.
 PLOT_ROW = 9
 #: 1 if the plot may start a track.
 STARTS = 10
@@ -27,5 +27,7 @@ STARTS = 10
 #: updated by the plot.
 INNOVATION_X, INNOVATION_Y = 11, 12
 LOG_LIKELIHOOD, STRENGTH = 13, 14
+#: Row of the plot in the recording.
+RECORDED = 15
 #: How many columns these are.
 PLOT_WIDTH = 16

@@ -18,7 +18,8 @@ from fuzzytrack.scan.scan_parts import ScanParts
 from fuzzytrack.scan.setting import Setting
 from fuzzytrack.scan.stages.pairs import assignment_stage, pairs_stage
 from fuzzytrack.scan.stages.plots import DONE, density_stage, plots_stage
-from fuzzytrack.scan.stages.tracks import follow_stage, report_stage, start_stage
+from fuzzytrack.scan.stages.reports import report_stage
+from fuzzytrack.scan.stages.tracks import follow_stage, start_stage
 
 __all__ = ["PAIRS", "ScanPass", "compiling_by_stage", "learn_code", "scan_pass", "sharing_code"]
 
@@ -49,8 +50,8 @@ class ScanPass:
     Attributes
     ----------
     run : callable
-        ``run(work, positions, covariances, times, may_start, begin) -> answer``: the stages from
-        number `begin` on, until one is not `DONE`.
+        ``run(work, positions, covariances, times, may_start, rows, begin) -> answer``: the stages
+        from number `begin` on, until one is not `DONE`.
     report : callable
         The last stage alone.
     density : callable
@@ -120,7 +121,12 @@ def _own_pass(tracker: ScanParts, plain: bool, by_stage: bool) -> ScanPass:
     if plain:
         stages, density, _ = _stages(tracker)
         return ScanPass(_in_turn(stages), stages.report, density, False)
-    return _made(tracker, compiled, by_stage)
+    return _made(tracker, _alone, by_stage)
+
+
+def _alone(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compiled code that is shared with no other tracker."""
+    return compiled(function, allocates=False)
 
 
 def _made(tracker: ScanParts, compile: Compile, by_stage: bool = False) -> ScanPass:
@@ -204,10 +210,16 @@ def _one_function(stages: Stages) -> FunctionType:
     plots, density, pairs, assignment, follow, start, report = stages
 
     def run(
-        work: Any, positions: Any, covariances: Any, times: Any, may_start: Any, begin: int
+        work: Any,
+        positions: Any,
+        covariances: Any,
+        times: Any,
+        may_start: Any,
+        rows: Any,
+        begin: int,
     ) -> int:
         if begin == 0:
-            answer = plots(work, positions, covariances, times, may_start)
+            answer = plots(work, positions, covariances, times, may_start, rows)
             if answer != DONE:
                 return answer
             density(work)
@@ -226,10 +238,16 @@ def _in_turn(stages: Stages) -> Callable[..., int]:
     """The stages one after the other, called from Python."""
 
     def run(
-        work: Any, positions: Any, covariances: Any, times: Any, may_start: Any, begin: int
+        work: Any,
+        positions: Any,
+        covariances: Any,
+        times: Any,
+        may_start: Any,
+        rows: Any,
+        begin: int,
     ) -> int:
         if begin == 0:
-            answer = stages.plots(work, positions, covariances, times, may_start)
+            answer = stages.plots(work, positions, covariances, times, may_start, rows)
             if answer != DONE:
                 return answer
         for stage in stages[max(begin, 1) :]:

@@ -8,12 +8,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.scan.clock import CLOCK_WIDTH, COUNTS_WIDTH, NEXT_ID
+from fuzzytrack.scan.clock import CLOCK_WIDTH, COUNTS_WIDTH, NEXT_ID, REPORTS, SORTED
 from fuzzytrack.scan.plot_columns import PLOT_WIDTH
-from fuzzytrack.scan.report_columns import REPORT_WIDTH
+from fuzzytrack.scan.report_columns import (
+    REPORT_DEVIATION,
+    REPORT_EXISTENCE,
+    REPORT_ID,
+    REPORT_KIND,
+    REPORT_NUMBERS,
+    REPORT_PLOT,
+    REPORT_POSITION,
+    REPORT_SCAN,
+    REPORT_SINCE,
+    REPORT_STATUS,
+    REPORT_TIME,
+    REPORT_VELOCITY,
+    REPORT_WHOLE,
+    REPORT_WORDS,
+)
 from fuzzytrack.scan.scan_parts import ScanParts
+from fuzzytrack.scan.track_reports import TrackReports
 
-__all__ = ["Workspace", "new_workspace", "with_room"]
+__all__ = ["Workspace", "new_workspace", "reported", "with_edges", "with_room"]
 
 Integers = NDArray[np.int64]
 
@@ -44,8 +60,8 @@ class Workspace(NamedTuple):
         Edges between tracks and plots.
     integers, numbers : ndarray
         Scratch of the parts.
-    report : ndarray, shape (room, REPORT_WIDTH)
-        See `fuzzytrack.scan.report_columns`.
+    report, report_whole, report_words : ndarray
+        Reported tracks: numbers, whole numbers and words, see `fuzzytrack.scan.report_columns`.
     """
 
     tracks: Array
@@ -67,10 +83,12 @@ class Workspace(NamedTuple):
     integers: Integers
     numbers: Array
     report: Array
+    report_whole: Integers
+    report_words: NDArray[np.uint8]
 
 
 #: Arrays of which the content lives from scan to scan; the others are scratch.
-LASTING = ("tracks", "free", "clock", "counts", "cells", "kept")
+LASTING = ("tracks", "clock", "counts", "cells", "kept")
 _ROOM, _PLOTS, _EDGES = 64, 64, 256
 
 
@@ -82,8 +100,8 @@ def new_workspace(tracker: ScanParts) -> Workspace:
     cells, kept = np.zeros(tracker.clutter.numbers + 1), np.zeros(tracker.identity.numbers + 1)
     empty = _scratch(tracker, _ROOM, _PLOTS, _EDGES)
     return Workspace(
-        tracks=np.empty((_ROOM, tracker.width)), free=np.empty(_ROOM, np.int64), clock=clock,
-        counts=counts, cells=cells, kept=kept, **empty,
+        tracks=np.empty((_ROOM, tracker.width)), clock=clock, counts=counts,
+        cells=cells, kept=kept, **empty,
     )  # fmt: skip
 
 
@@ -98,12 +116,15 @@ def _scratch(tracker: ScanParts, room: int, plots: int, edges: int) -> dict[str,
         **{name: np.empty((plots, PLOT_WIDTH)) for name in ("given", "plots")},
         **{name: np.empty(plots, np.int64) for name in ("order", "found", "track_of")},
         "due": np.empty(room, np.uint8),
+        "free": np.empty(room, np.int64),
         **{name: np.empty(room + 1, np.int64) for name in ("plot_of", "first")},
         "edge_plot": np.empty(edges, np.int64),
         "edge_cost": np.empty(edges),
         "integers": np.empty(whole + 1, np.int64),
         "numbers": np.empty(floats + 1),
-        "report": np.empty((room, REPORT_WIDTH)),
+        "report": np.empty((room, REPORT_NUMBERS)),
+        "report_whole": np.empty((room, REPORT_WHOLE), np.int64),
+        "report_words": np.empty((room, REPORT_WORDS), np.uint8),
     }
 
 
@@ -118,13 +139,48 @@ def with_room(work: Workspace, tracker: ScanParts, rows: int, plots: int, edges:
     more = work._asdict()
     if rows > room:
         room = rows + rows // 4
-        for name in ("tracks", "free"):
-            # In place where the system can move pages, so that memory is never needed twice.
-            array = np.require(more[name], requirements="O")
-            array.resize((room, *array.shape[1:]), refcheck=False)
-            more[name] = array
+        # In place where the system can move pages, so that memory is never needed twice.
+        tracks = np.require(work.tracks, requirements="O")
+        tracks.resize((room, tracks.shape[1]), refcheck=False)
+        more["tracks"] = tracks
     have_plots = plots + plots // 4 if plots > have_plots else have_plots
     have_edges = edges + edges // 4 if edges > have_edges else have_edges
     for name in set(more) - set(LASTING):
         more[name] = None
     return Workspace(**{**more, **_scratch(tracker, room, have_plots, have_edges)})
+
+
+def with_edges(work: Workspace, tracker: ScanParts) -> Workspace:
+    """The same arrays with room for twice the edges; what was found of the plots stays."""
+    rows, plots = len(work.tracks), len(work.plots)
+    more = with_room(work, tracker, rows, plots, 2 * len(work.edge_plot))
+    for name in ("plots", "order", "track_of", "due"):
+        getattr(more, name)[:] = getattr(work, name)
+    # The index of the candidates is in the scratch of the parts.
+    more.integers[: len(work.integers)] = work.integers
+    more.numbers[: len(work.numbers)] = work.numbers
+    return more
+
+
+def reported(work: Workspace) -> TrackReports:
+    """What the last stage has written, copied."""
+    n = work.counts[REPORTS]
+    numbers, whole, words = work.report[:n], work.report_whole[:n], work.report_words[:n]
+    if work.counts[SORTED]:
+        numbers, whole, words = numbers.copy(), whole.copy(), words.copy()
+    else:
+        order = np.argsort(whole[:, REPORT_ID], kind="stable")
+        numbers, whole, words = numbers[order], whole[order], words[order]
+    return TrackReports(
+        whole[:, REPORT_SCAN],
+        numbers[:, REPORT_TIME],
+        whole[:, REPORT_ID],
+        numbers[:, REPORT_POSITION : REPORT_POSITION + 2],
+        numbers[:, REPORT_VELOCITY : REPORT_VELOCITY + 2],
+        numbers[:, REPORT_DEVIATION : REPORT_DEVIATION + 4],
+        words[:, REPORT_STATUS],
+        words[:, REPORT_KIND],
+        numbers[:, REPORT_EXISTENCE],
+        numbers[:, REPORT_SINCE],
+        whole[:, REPORT_PLOT],
+    )

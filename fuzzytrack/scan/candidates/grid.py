@@ -13,7 +13,7 @@ from fuzzytrack.scan.setting import Setting
 
 __all__ = ["GridCandidates"]
 
-# Whole numbers before the table: columns and rows less 1, both powers of 2, and columns.
+# Whole numbers before the table: columns and rows less 1, both powers of 2, and columns; calls.
 _ACROSS, _UP, _COLUMNS, _CALLS, _HEAD = 0, 1, 2, 3, 4
 #: Smallest table; cells that a track looks into at most; plots it looks at, in a cell and in all.
 _LEAST, _MOST_CELLS, _MOST_IN_CELL, _MOST = 64, 4096, 64, 4096
@@ -34,9 +34,9 @@ def _table(plots: int) -> int:
 class GridCandidates(Candidates):
     """Plots are sorted into the cells of a table, about one a cell; a track looks into few cells.
 
-    The table repeats over the plane, so it has no border; each plot keeps the numbers of its cell,
-    so a cell that shares its place in the table with others gives none of theirs. Where plots
-    crowd, cells are halved, up to 12 times.
+    The table repeats over the plane, so it has no border; a track that looks into cells may find
+    plots of others that share their place in the table, which its gate refuses. Where plots crowd,
+    cells are halved, up to 12 times.
 
     No scan takes more than time in proportion to tracks and plots: a track looks at no more than 64
     plots of a cell and 4,096 in all, others at others. Both are far above what a radar gives; they
@@ -49,11 +49,11 @@ class GridCandidates(Candidates):
                             above=True)  # fmt: skip
 
     def integers(self, plots: int) -> int:
-        """Table, and the cell of each plot."""
-        return _HEAD + _table(plots) + 1 + 2 * plots
+        """Table: the first plot of each cell."""
+        return _HEAD + _table(plots) + 1
 
     def numbers(self, plots: int) -> int:
-        """Side of a cell."""
+        """Cells in a meter."""
         return 1
 
     def kernels(self, setting: Setting) -> CandidatesKernels:
@@ -70,8 +70,8 @@ class GridCandidates(Candidates):
             side = math.sqrt((right - left) * (high - low) / count)
             return side if side > least_side else least_side
 
-        def place(x: float, y: float, side: float, integers: Any) -> int:
-            across, up = math.floor(x / side), math.floor(y / side)
+        def place(x: float, y: float, scale: float, integers: Any) -> int:
+            across, up = math.floor(x * scale), math.floor(y * scale)
             row: int = (up & integers[_UP]) * integers[_COLUMNS]
             column: int = across & integers[_ACROSS]
             return row + column
@@ -82,7 +82,7 @@ class GridCandidates(Candidates):
                 integers[_HEAD + k] = 0
             crowd = 0.0
             for j in range(count):
-                k = _HEAD + place(plots[j, PLOT_X], plots[j, PLOT_Y], side, integers)
+                k = _HEAD + place(plots[j, PLOT_X], plots[j, PLOT_Y], 1.0 / side, integers)
                 crowd += 2.0 * integers[k] + 1.0
                 integers[k] += 1
             return crowd / count
@@ -106,21 +106,17 @@ class GridCandidates(Candidates):
             while fill(plots, count, side, integers, size) > _CROWDED and halvings < _HALVINGS:
                 side *= 0.5
                 halvings += 1
-            numbers[0] = side
+            scale = 1.0 / side
+            numbers[0] = scale
             begin = 0
             for k in range(size + 1):
                 here = integers[_HEAD + k]
                 integers[_HEAD + k] = begin
                 begin += here
-            cell = _HEAD + size + 1
             for j in range(count):
-                x, y = plots[j, PLOT_X], plots[j, PLOT_Y]
-                k = _HEAD + place(x, y, side, integers)
-                row = integers[k]
-                integers[k] = row + 1
-                order[row] = j
-                integers[cell + 2 * row] = math.floor(x / side)
-                integers[cell + 2 * row + 1] = math.floor(y / side)
+                k = _HEAD + place(plots[j, PLOT_X], plots[j, PLOT_Y], scale, integers)
+                order[integers[k]] = j
+                integers[k] += 1
             # Each entry is now where its cell ends, which is where the next one begins.
             for k in range(size, 0, -1):
                 integers[_HEAD + k] = integers[_HEAD + k - 1]
@@ -142,27 +138,27 @@ class GridCandidates(Candidates):
             if count == 0:
                 return 0
             integers[_CALLS] += 1
-            side = numbers[0]
-            width = 2.0 * reach / side + 2.0
-            if not width * width < (count if count < _MOST_CELLS else _MOST_CELLS) + 32.0:
+            scale = numbers[0]
+            width = 2.0 * reach * scale + 2.0
+            columns, rows = integers[_COLUMNS], integers[_UP] + 1
+            # No cell is looked into twice, and no more cells than there are plots.
+            few = width < columns and width < rows and width * width < count + 32.0
+            if not (few and width * width < _MOST_CELLS):
                 return some(count, integers, found)
-            left, right = math.floor((x - reach) / side), math.floor((x + reach) / side)
-            low, high = math.floor((y - reach) / side), math.floor((y + reach) / side)
-            columns = integers[_COLUMNS]
-            cell = _HEAD + (integers[_UP] + 1) * columns + 1
+            left, right = math.floor((x - reach) * scale), math.floor((x + reach) * scale)
+            low, high = math.floor((y - reach) * scale), math.floor((y + reach) * scale)
             n = 0
             for up in range(low, high + 1):
+                start = _HEAD + (up & integers[_UP]) * columns
                 for across in range(left, right + 1):
-                    k = _HEAD + (up & integers[_UP]) * columns + (across & integers[_ACROSS])
+                    k = start + (across & integers[_ACROSS])
                     begin, end = integers[k], integers[k + 1]
                     if end - begin > _MOST_IN_CELL:
                         begin += (integers[_CALLS] * 61) % (end - begin - _MOST_IN_CELL + 1)
                         end = begin + _MOST_IN_CELL
-                    for row in range(begin, end):
-                        here = integers[cell + 2 * row] == across
-                        if here and integers[cell + 2 * row + 1] == up and n < _MOST:
-                            found[n] = row
-                            n += 1
+                    for row in range(begin, min(end, begin + _MOST - n)):
+                        found[n] = row
+                        n += 1
             return n
 
         return CandidatesKernels(arrange, near)

@@ -40,9 +40,12 @@ class Existence(Quality):
         undetected, log_birth = 1.0 - setting.sensor.detection, math.log(birth)
 
         def survived(score: float, dt: float) -> float:
+            # logit(p σ(L)) with p = exp(lasting); its series where that is as exact.
             lasting = rate * dt
-            # logit(p σ(L)) with p = exp(lasting)
-            return lasting + score - math.log(1.0 - math.expm1(lasting) * math.exp(score))
+            ended = -lasting * (1.0 + lasting * (1 / 2 + lasting * (1 / 6 + lasting / 24)))
+            if lasting < -0.005:
+                ended = -math.expm1(lasting)
+            return lasting + score - math.log(1.0 + ended * math.exp(score))
 
         def start(tracks: Any, i: int, plots: Any, j: int, clock: Any) -> None:
             score = log_birth - plots[j, LOG_DENSITY]

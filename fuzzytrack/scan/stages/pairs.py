@@ -54,12 +54,9 @@ def pairs_stage(
     predict, reach, distance = update.predict, gate.reach, gate.distance
     accept, near, cost = initiation.accept, candidates.near, association.cost
 
-    def widest_near(x: float, y: float, size: float, clock: Any, counts: Any) -> float:
-        """Largest variance of a plot no farther than `size` from a place."""
+    def widest_near(x: float, y: float, size: float, clock: Any) -> float:
+        """Largest variance of a plot no farther than `size` from a place, by range and bearing."""
         widest: float = clock[WIDEST]
-        if counts[HAS_COVARIANCES] > 0:
-            return widest
-        # The noise grows with the range only.
         dx, dy = x - clock[OWN_X], y - clock[OWN_Y]
         r11, _, r22 = noise(math.sqrt(dx * dx + dy * dy) + size, 0.0, 0.0, 0.0)
         wide = r11 if r11 > r22 else r22
@@ -85,6 +82,7 @@ def pairs_stage(
         integers, numbers = work.integers, work.numbers
         rows, count, latest = counts[ROWS], counts[PLOTS], clock[LATEST]
         span = latest - clock[EARLIEST]
+        widest, range_noise = clock[WIDEST], counts[HAS_COVARIANCES] == 0
         some_due, own_times = counts[HAS_DUE] > 0, counts[HAS_TIMES] > 0
         end = 0
         for i in range(rows):
@@ -101,9 +99,10 @@ def pairs_stage(
             x, y, vx, vy, p11, p12, p22 = predict(tracks, i, dt)
             half = 0.5 * (p11 - p22)
             spread = 0.5 * (p11 + p22) + math.sqrt(half * half + p12 * p12)
-            farthest = reach(tracks, i, x, y, clock, spread + clock[WIDEST])
-            noisy = spread + widest_near(x, y, farthest, clock, counts)
-            farthest = reach(tracks, i, x, y, clock, noisy)
+            farthest = reach(tracks, i, x, y, clock, spread + widest)
+            if range_noise:
+                noisy = spread + widest_near(x, y, farthest, clock)
+                farthest = reach(tracks, i, x, y, clock, noisy)
             if own_times:
                 farthest += span * math.sqrt(vx * vx + vy * vy)
             n = near(x, y, farthest, plots, count, clock, integers, numbers, found)

@@ -10,6 +10,7 @@ from fuzzytrack.scan.candidates.base import CandidatesKernels
 from fuzzytrack.scan.clock import (
     EARLIEST,
     HAS_COVARIANCES,
+    HAS_ROWS,
     HAS_STARTS,
     HAS_TIMES,
     LATEST,
@@ -35,6 +36,7 @@ from fuzzytrack.scan.plot_columns import (
     R11,
     R12,
     R22,
+    RECORDED,
     STARTS,
 )
 from fuzzytrack.scan.sensor import NoiseKernel
@@ -58,11 +60,13 @@ def plots_stage(
     """Stage that checks the plots and puts them into the order of the candidates."""
     extract, arrange = extraction.extract, candidates.arrange
 
-    def plots_stage(work: Any, positions: Any, covariances: Any, times: Any, may_start: Any) -> int:
+    def plots_stage(
+        work: Any, positions: Any, covariances: Any, times: Any, may_start: Any, rows: Any
+    ) -> int:
         clock, counts, given, plots = work.clock, work.counts, work.given, work.plots
         count = counts[PLOTS]
         with_covariances, with_times = counts[HAS_COVARIANCES] > 0, counts[HAS_TIMES] > 0
-        with_starts = counts[HAS_STARTS] > 0
+        with_starts, with_rows = counts[HAS_STARTS] > 0, counts[HAS_ROWS] > 0
         own_x, own_y, now = clock[OWN_X], clock[OWN_Y], clock[SCAN_TIME]
         for j in range(count):
             counts[WHERE] = j
@@ -85,6 +89,7 @@ def plots_stage(
             given[j, PLOT_X], given[j, PLOT_Y], given[j, PLOT_TIME] = x, y, time
             given[j, R11], given[j, R12], given[j, R22] = r11, r12, r22
             given[j, PLOT_ROW] = j
+            given[j, RECORDED] = rows[j] if with_rows else j
             given[j, STARTS] = 1.0
             if with_starts and may_start[j] == 0:
                 given[j, STARTS] = 0.0

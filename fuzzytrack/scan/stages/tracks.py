@@ -1,4 +1,4 @@
-"""Stages that follow tracks, end them, start new ones, and report them."""
+"""Stages that follow tracks, end them, and start new ones."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ from fuzzytrack.scan.clock import (
     HAS_DUE,
     NEXT_ID,
     PLOTS,
-    REPORTS,
     ROWS,
     SCAN_TIME,
-    TENTATIVE_TOO,
 )
 from fuzzytrack.scan.clutter.base import ClutterKernels
 from fuzzytrack.scan.confirmation.base import CONFIRM, END, ConfirmationKernels
@@ -26,36 +24,22 @@ from fuzzytrack.scan.plot_columns import (
     INNOVATION_Y,
     LOG_DENSITY,
     LOG_LIKELIHOOD,
-    PLOT_ROW,
     PLOT_TIME,
     PLOT_X,
     PLOT_Y,
     R11,
     R12,
     R22,
+    RECORDED,
     STARTS,
     STRENGTH,
 )
 from fuzzytrack.scan.quality.base import QualityKernels
-from fuzzytrack.scan.report.base import ReportKernels
-from fuzzytrack.scan.report_columns import (
-    REPORT_DEVIATION,
-    REPORT_EXISTENCE,
-    REPORT_ID,
-    REPORT_KIND,
-    REPORT_PLOT,
-    REPORT_POSITION,
-    REPORT_SINCE,
-    REPORT_STATUS,
-    REPORT_TIME,
-    REPORT_VELOCITY,
-)
 from fuzzytrack.scan.stages.pairs import log_likelihood
 from fuzzytrack.scan.stages.plots import DONE
 from fuzzytrack.scan.track_columns import (
     HITS,
     ID,
-    KIND,
     LOOKED,
     MISSES,
     PLOT,
@@ -64,7 +48,7 @@ from fuzzytrack.scan.track_columns import (
 )
 from fuzzytrack.scan.update.base import UpdateKernels
 
-__all__ = ["follow_stage", "report_stage", "start_stage"]
+__all__ = ["CONFIRMED", "follow_stage", "start_stage"]
 
 TENTATIVE, CONFIRMED = 1.0, 2.0
 
@@ -106,7 +90,7 @@ def follow_stage(
             update_hit(tracks, i, plots, j, clock)
         confirmation_hit(tracks, i, plots, j, clock)
         tracks[i, TIME] = tracks[i, LOOKED] = plots[j, PLOT_TIME]
-        tracks[i, PLOT] = plots[j, PLOT_ROW]
+        tracks[i, PLOT] = plots[j, RECORDED]
 
     def miss(tracks: Any, i: int, clock: Any) -> None:
         tracks[i, MISSES] += 1.0
@@ -164,7 +148,7 @@ def start_stage(
     def begin(tracks: Any, i: int, plots: Any, j: int, clock: Any) -> int:
         tracks[i, STATUS], tracks[i, HITS], tracks[i, MISSES] = TENTATIVE, 1.0, 0.0
         tracks[i, TIME] = tracks[i, LOOKED] = plots[j, PLOT_TIME]
-        tracks[i, PLOT] = plots[j, PLOT_ROW]
+        tracks[i, PLOT] = plots[j, RECORDED]
         initiation_start(tracks, i, plots, j, clock)
         quality_start(tracks, i, plots, j, clock)
         kind_start(tracks, i, plots, j, clock)
@@ -231,48 +215,3 @@ def start_stage(
                     tracks[i, ID] = identity_confirm(tracks, i, work.clock, work.kept)
 
     return start_stage
-
-
-def report_stage(
-    update: UpdateKernels, quality: QualityKernels, report: ReportKernels
-) -> Callable[..., int]:
-    """Stage that writes what is reported."""
-    predict, velocity_variance = update.predict, update.velocity_variance
-    existence, shown = quality.existence, report.shown
-
-    def write(tracks: Any, i: int, row: Any, n: int, now: float) -> None:
-        coasts = tracks[i, MISSES] > 0.0
-        time = now if coasts else tracks[i, TIME]
-        dt = time - tracks[i, TIME]
-        x, y, vx, vy, p11, _, p22 = predict(tracks, i, dt)
-        v11, v22 = velocity_variance(tracks, i, dt)
-        row[n, REPORT_TIME], row[n, REPORT_SINCE] = time, dt
-        row[n, REPORT_POSITION], row[n, REPORT_POSITION + 1] = x, y
-        row[n, REPORT_VELOCITY], row[n, REPORT_VELOCITY + 1] = vx, vy
-        row[n, REPORT_DEVIATION] = math.sqrt(p11)
-        row[n, REPORT_DEVIATION + 1] = math.sqrt(p22)
-        row[n, REPORT_DEVIATION + 2] = math.sqrt(v11)
-        row[n, REPORT_DEVIATION + 3] = math.sqrt(v22)
-        row[n, REPORT_EXISTENCE] = existence(tracks, i)
-        row[n, REPORT_ID], row[n, REPORT_KIND] = tracks[i, ID], tracks[i, KIND]
-        row[n, REPORT_PLOT] = tracks[i, PLOT]
-        status = 0.0
-        if tracks[i, STATUS] == CONFIRMED:
-            status = 2.0 if coasts else 1.0
-        row[n, REPORT_STATUS] = status
-
-    def report_stage(work: Any) -> int:
-        tracks, clock, counts, due = work.tracks, work.clock, work.counts, work.due
-        some_due, tentative_too = counts[HAS_DUE] > 0, counts[TENTATIVE_TOO] > 0
-        n = 0
-        for i in range(counts[ROWS]):
-            status = tracks[i, STATUS]
-            if status == 0.0 or (some_due and due[i] == 0):
-                continue
-            if tentative_too or (status == CONFIRMED and shown(tracks, i, clock)):
-                write(tracks, i, work.report, n, clock[SCAN_TIME])
-                n += 1
-        counts[REPORTS] = n
-        return DONE
-
-    return report_stage

@@ -1,0 +1,94 @@
+"""The last stage of a scan: what is reported of its tracks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fuzzytrack.scan.clock import HAS_DUE, REPORTS, ROWS, SCAN, SCAN_TIME, SORTED, TENTATIVE_TOO
+from fuzzytrack.scan.quality.base import QualityKernels
+from fuzzytrack.scan.report.base import ReportKernels
+from fuzzytrack.scan.report_columns import (
+    REPORT_DEVIATION,
+    REPORT_EXISTENCE,
+    REPORT_ID,
+    REPORT_KIND,
+    REPORT_PLOT,
+    REPORT_POSITION,
+    REPORT_SCAN,
+    REPORT_SINCE,
+    REPORT_STATUS,
+    REPORT_TIME,
+    REPORT_VELOCITY,
+)
+from fuzzytrack.scan.stages.plots import DONE
+from fuzzytrack.scan.stages.tracks import CONFIRMED
+from fuzzytrack.scan.track_columns import ID, KIND, MISSES, PLOT, STATUS, TIME
+from fuzzytrack.scan.update.base import UpdateKernels
+
+__all__ = ["report_stage"]
+
+#: Most tracks that are put in the order of identities here.
+_FEW = 64
+
+
+def report_stage(
+    update: UpdateKernels, quality: QualityKernels, report: ReportKernels
+) -> Callable[..., int]:
+    """Stage that writes what is reported."""
+    predict, velocity_variance = update.predict, update.velocity_variance
+    existence, shown = quality.existence, report.shown
+
+    def write(tracks: Any, i: int, work: Any, n: int, now: float) -> None:
+        numbers, whole, words = work.report, work.report_whole, work.report_words
+        coasts = tracks[i, MISSES] > 0.0
+        time = now if coasts else tracks[i, TIME]
+        dt = time - tracks[i, TIME]
+        x, y, vx, vy, p11, _, p22 = predict(tracks, i, dt)
+        v11, v22 = velocity_variance(tracks, i, dt)
+        numbers[n, REPORT_TIME], numbers[n, REPORT_SINCE] = time, dt
+        numbers[n, REPORT_POSITION], numbers[n, REPORT_POSITION + 1] = x, y
+        numbers[n, REPORT_VELOCITY], numbers[n, REPORT_VELOCITY + 1] = vx, vy
+        numbers[n, REPORT_DEVIATION] = math.sqrt(p11)
+        numbers[n, REPORT_DEVIATION + 1] = math.sqrt(p22)
+        numbers[n, REPORT_DEVIATION + 2] = math.sqrt(v11)
+        numbers[n, REPORT_DEVIATION + 3] = math.sqrt(v22)
+        numbers[n, REPORT_EXISTENCE] = existence(tracks, i)
+        whole[n, REPORT_SCAN], whole[n, REPORT_ID] = int(work.clock[SCAN]), int(tracks[i, ID])
+        whole[n, REPORT_PLOT] = int(tracks[i, PLOT])
+        status = 0
+        if tracks[i, STATUS] == CONFIRMED:
+            status = 2 if coasts else 1
+        words[n, REPORT_STATUS], words[n, REPORT_KIND] = status, int(tracks[i, KIND])
+
+    def report_stage(work: Any) -> int:
+        tracks, clock, counts, due = work.tracks, work.clock, work.counts, work.due
+        # Plots of tracks are no longer needed.
+        order = work.plot_of
+        some_due, tentative_too = counts[HAS_DUE] > 0, counts[TENTATIVE_TOO] > 0
+        n, last, in_order = 0, 0.0, True
+        for i in range(counts[ROWS]):
+            status = tracks[i, STATUS]
+            if status == 0.0 or (some_due and due[i] == 0):
+                continue
+            if tentative_too or (status == CONFIRMED and shown(tracks, i, clock)):
+                order[n] = i
+                n += 1
+                in_order = in_order and tracks[i, ID] > last
+                last = tracks[i, ID]
+        if not in_order and n <= _FEW:
+            for k in range(1, n):
+                i, place = order[k], k
+                while place > 0 and tracks[order[place - 1], ID] > tracks[i, ID]:
+                    order[place] = order[place - 1]
+                    place -= 1
+                order[place] = i
+            in_order = True
+        for k in range(n):
+            write(tracks, order[k], work, k, clock[SCAN_TIME])
+        counts[REPORTS] = n
+        counts[SORTED] = 1 if in_order else 0
+        return DONE
+
+    return report_stage
