@@ -104,6 +104,12 @@ class ReportedTracks:
         return self.reports.kind[self.last]
 
     @property
+    def confirmed(self) -> Mask:
+        """Whether each track was more than tentative in some scan."""
+        late = np.concatenate([[0], np.cumsum(self.reports.status != TENTATIVE)])
+        return np.asarray(late[self.edges[1:]] > late[self.edges[:-1]])
+
+    @property
     def joined(self) -> Mask:
         """Whether each row and the next are of one track in scans that follow one another."""
         rows = self.reports

@@ -60,7 +60,8 @@ def plot_scan(
     ----------
     result : ScanResult or TrackReports
         What was reported. Moving tracks have a color each, static ones are gray; both are dashed
-        where they coast, and dotted while they are tentative.
+        where they coast, and dotted while they are tentative. Tracks that were never confirmed are
+        gray and dotted, without marks.
     scans : sequence of Scan, optional
         The scans, for the plots and the path of the own ship.
     truth : tuple, mapping or Positions, optional
@@ -92,7 +93,7 @@ def plot_scan(
     """
     tracks = ReportedTracks.of(result)
     if not static:
-        tracks = tracks.where(tracks.kind != STATIC)
+        tracks = tracks.where((tracks.kind != STATIC) | ~tracks.confirmed)
     paths = ObjectPaths.of(truth)
     plots, ship = plots_of(scans), _own_path(own, scans, result)
     everything = np.concatenate([tracks.reports.position, paths.position, plots, ship])
@@ -134,13 +135,27 @@ class _Picture:
         return len(self.tracks) <= _LINES and len(self.tracks.reports) <= _ROWS
 
     @property
+    def moving(self) -> Mask:
+        """Tracks with a color of their own: those that were confirmed, and are not static."""
+        return np.asarray(self.tracks.confirmed & (self.tracks.kind != STATIC))
+
+    @property
+    def static(self) -> Mask:
+        """Static tracks."""
+        return np.asarray(self.tracks.confirmed & (self.tracks.kind == STATIC))
+
+    @property
+    def count(self) -> int:
+        """Number of tracks that were confirmed, which have marks and names."""
+        return int(self.tracks.confirmed.sum())
+
+    @property
     def colors(self) -> list[Any]:
-        """Color of each track: one of its own if it has moved, else gray."""
-        moving = np.asarray(self.tracks.kind != STATIC)
-        count = int(moving.sum())
+        """Color of each track, gray if it has none of its own."""
+        count = int(self.moving.sum())
         # Black is that of the truth.
         own = iter(track_colors(count if count < len(shared.COLORS) else max(count, 8)))
-        return [next(own) if each else shared.GRAY for each in moving.tolist()]
+        return [next(own) if each else shared.GRAY for each in self.moving.tolist()]
 
     def draw_plots(self, plots: Array) -> None:
         """Plots one by one and faint, or by their density."""
@@ -187,8 +202,8 @@ class _Picture:
     def _styles(self) -> dict[str, tuple[Mask, dict[str, Any]]]:
         """Steps from row to row that are drawn alike, and how; one step has one style."""
         rows, joined = self.tracks.reports, self.tracks.joined
-        moving = np.asarray(self.tracks.kind != STATIC)[self.tracks.track][1:]
-        wide = 1.7 if len(self.tracks) <= 200 else 1.0
+        moving = self.moving[self.tracks.track][1:]
+        wide = 1.7 if self.count <= _MARKED else 1.0
         coasts = rows.status[1:] == COASTING
         early = ~coasts & (rows.status[1:] == TENTATIVE)
         steady = joined & ~coasts & ~early
@@ -201,7 +216,7 @@ class _Picture:
             ),
             "tentative": (
                 joined & early,
-                {"linewidths": 0.85 * wide, "linestyles": [(0, (0.8, 1.4))], "zorder": 2.7},
+                {"linewidths": 0.75 * wide, "linestyles": [(0, (0.8, 1.4))], "zorder": 2.6},
             ),
         }
 
@@ -227,27 +242,27 @@ class _Picture:
     def _draw_ends(self) -> None:
         """Where tracks began and ended, or are in the last scan; squares for static ones."""
         tracks = self.tracks
-        moving = np.asarray(tracks.kind != STATIC)
+        moving, static, count = self.moving, self.static, self.count
         lives = tracks.reports.scan[tracks.last] == tracks.reports.scan.max()
-        small = {} if len(tracks) <= _FEW else {"markersize": 3.2, "markeredgewidth": 0.8}
+        small = {} if count <= _FEW else {"markersize": 3.2, "markeredgewidth": 0.8}
         ended = moving & ~lives
         for name, rows in (("start", tracks.first[moving]), ("end", tracks.last[ended])):
-            if len(rows) and len(tracks) <= _MARKED:
+            if len(rows) and count <= _MARKED:
                 self._draw_marks(rows, label=name, **{**STYLES[name], "markersize": 4.5, **small})
         here = tracks.last[moving & lives]
         if len(here):
             kept = (moving & lives).tolist()
             face = [color for color, each in zip(self.colors, kept, strict=True) if each]
             x, y = self.plane.shown(tracks.reports.position[here])
-            size = 26.0 if len(tracks) <= _FEW else 12.0 if len(tracks) <= _MARKED else 4.0
-            edge = "white" if len(tracks) <= _MARKED else "none"
+            size = 26.0 if count <= _FEW else 12.0 if count <= _MARKED else 4.0
+            edge = "white" if count <= _MARKED else "none"
             self.ax.scatter(x, y, s=size, c=face, zorder=3.2, edgecolors=edge)
             look: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": shared.INK}
             self.ax.plot([], [], label="in the last scan", markersize=size**0.5, **look)
-        if (~moving).any():
+        if static.any():
             look = {"linestyle": "none", "marker": "s", "color": shared.GRAY, "zorder": 2.5}
-            look |= {"markersize": 4.2 if len(tracks) <= _FEW else 2.8, "markerfacecolor": "white"}
-            self._draw_marks(tracks.last[~moving], label="_static", **look)
+            look |= {"markersize": 4.2 if count <= _FEW else 2.8, "markerfacecolor": "white"}
+            self._draw_marks(tracks.last[static], label="_static", **look)
 
     def _draw_marks(self, rows: NDArray[np.int64], **style: Any) -> None:
         self.ax.plot(*self.plane.shown(self.tracks.reports.position[rows]), **style)
@@ -262,7 +277,7 @@ class _Picture:
             self.ax.set_title("no track", fontsize="medium")
         elif not self.with_lines:
             self.ax.set_title(f"{len(tracks):,} tracks, not drawn one by one", fontsize="medium")
-        elif len(tracks) <= _NAMED:
+        elif self.count <= _NAMED:
             self._name_tracks(ship)
 
     def _name_tracks(self, ship: Array) -> None:
@@ -272,7 +287,7 @@ class _Picture:
         path = np.stack(plane.shown(ship), axis=1)
         lines = np.insert(points, tracks.edges[1:-1], np.nan, axis=0)
         lines = np.concatenate([lines, np.full((1, 2), np.nan), path])
-        order = np.argsort(tracks.kind == STATIC, kind="stable")
+        order = np.concatenate([np.flatnonzero(self.moving), np.flatnonzero(self.static)])
         colors = self.colors
         label_ends(
             self.ax,

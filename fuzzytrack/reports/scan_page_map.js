@@ -255,6 +255,11 @@ class RadarMap {
     return this.toPixels(this.run.place[2 * row], this.run.place[2 * row + 1]);
   }
 
+  // Of a tentative track the velocity is hardly known.
+  hasVector(row) {
+    return this.run.kind[row] !== STATIC && this.run.status[row] !== TENTATIVE;
+  }
+
   // Where the line of a track's velocity ends that begins at its mark.
   vectorEnd(row, x, y) {
     const long = this.vector * this.scale;
@@ -272,7 +277,7 @@ class RadarMap {
       pen.fillRect(x - 1, y - 1, 2.5, 2.5);
       return;
     }
-    if (run.kind[row] !== STATIC) {
+    if (this.hasVector(row)) {
       pen.beginPath();
       pen.moveTo(x, y);
       pen.lineTo(...this.vectorEnd(row, x, y));
@@ -328,7 +333,7 @@ class RadarMap {
   // A mark and the line of its velocity, which labels must not cover.
   takeMark(taken, row, x, y) {
     taken.take([x - 5, y - 5, x + 5, y + 5]);
-    if (this.run.kind[row] === STATIC) return;
+    if (!this.hasVector(row)) return;
     const [u, v] = this.vectorEnd(row, x, y);
     const steps = Math.min(30, Math.ceil(Math.hypot(u - x, v - y) / CELL));
     for (let k = 1; k <= steps; k++) {

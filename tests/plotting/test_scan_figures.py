@@ -70,6 +70,28 @@ def test_static_tracks_are_gray_and_can_be_left_out():
     assert {text.get_text() for text in ax.texts} <= {"1", "2", "3", "4", "100"}
 
 
+def test_tracks_that_were_never_confirmed_have_no_color_and_no_mark():
+    early = rows(HARBOR.reports, 3)
+    early.status[:] = STATUSES.index("tentative")
+    both = TrackReports.joined([early, rows(HARBOR.reports, 4)])
+    _, ax = plot_scan(both)
+    dotted = [c for c in ax.collections if isinstance(c, LineCollection) and len(c.get_segments())]
+    found = [
+        (tuple(color), segment)
+        for c in dotted
+        for color, segment in zip(
+            np.broadcast_to(c.get_colors(), (len(c.get_segments()), 4)),
+            c.get_segments(),
+            strict=True,
+        )
+    ]
+    gray = [segment for color, segment in found if color[0] == color[1] == color[2]]
+    np.testing.assert_array_equal(gray, [early.position])
+    assert len(lines(ax)["start"]) == 1
+    assert [text.get_text() for text in ax.texts] == ["4"]
+    assert {text.get_text() for text in plot_scan(both, static=False)[1].texts} == {"4"}
+
+
 def test_starts_ends_and_the_last_scan_are_marked():
     _, ax = plot_scan(HARBOR.reports)
     drawn = lines(ax)
