@@ -19,12 +19,17 @@ from fuzzytrack.io.byte_stream import STANDARD_INPUT
 from fuzzytrack.io.files import PathLike, check_output
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.scan_run import ScanTotals
-from fuzzytrack.recordings.scanning import DEFAULT_SCANNER, ScanJob, ScannedRecording
+from fuzzytrack.recordings.scanning import (
+    DEFAULT_SCANNER,
+    ScanJob,
+    ScannedRecording,
+    scanner_with,
+)
 
 __all__ = ["scan"]
 
 # Headings in the help.
-_SCANS, _TRACKS = "Scans", "Tracks"
+_SCANS, _TRACKS, _LIVE = "Scans", "Tracks", "Live feeds"
 _HEADS = {
     "scans": "scans",
     "empty_scans": "empty",
@@ -165,6 +170,15 @@ def scan(
             rich_help_panel=_TRACKS,
         ),
     ] = None,
+    follow: Annotated[
+        bool,
+        typer.Option(
+            "--follow",
+            help="Read lines from standard input (-) or ASTERIX from udp://127.0.0.1:PORT, and "
+            "answer each scan at once.",
+            rich_help_panel=_LIVE,
+        ),
+    ] = False,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
@@ -173,6 +187,34 @@ def scan(
     Clutter, missed plots, births and deaths of tracks are the business of a configuration.
     """
     options.load_plugins(plugin)
+    how = {
+        "scan": scan,
+        "period": None if period is None else number_or(period, "--period", {}),
+        "group": group,
+        "own": _names(own, "--own"),
+        "scans": scans,
+        "lateness": None if lateness is None else number_or(lateness, "--lateness", {"0": 0.0}),
+        "sectors": sectors,
+    }
+    chosen = _names(output_columns, "--output-columns")
+    if follow:
+        for option, given in (("--plot", plot), ("--animate", animate)):
+            if given is not None:
+                raise ValueError(f"{option}: needs the whole recording; not with --follow")
+        from fuzzytrack.cli.follow_scans import follow_scans
+
+        follow_scans(
+            files,
+            reading,
+            scanner_with(config, tracker),
+            how,
+            output,
+            output_columns=chosen,
+            tentative=tentative,
+            json=json,
+            quote_formulas=quote_formulas,
+        )
+        return
     if output == STANDARD_OUTPUT and json:
         raise ValueError("--json: -o - writes the tracks to standard output; name a file")
     if output_columns is not None and output is None:
@@ -182,14 +224,8 @@ def scan(
         config,
         reading,
         tracker=tracker,
-        output_columns=_names(output_columns, "--output-columns"),
-        scan=scan,
-        period=None if period is None else number_or(period, "--period", {}),
-        group=group,
-        own=_names(own, "--own"),
-        scans=scans,
-        lateness=None if lateness is None else number_or(lateness, "--lateness", {"0": 0.0}),
-        sectors=sectors,
+        output_columns=chosen,
+        **how,
     )
     pictures = _Pictures(plot, animate)
     totals = _run(job, output, pictures, tentative=tentative, quote_formulas=quote_formulas)

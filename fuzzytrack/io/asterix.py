@@ -73,18 +73,32 @@ class Asterix(Reader):
             If it cannot be read.
         """
         with open_bytes(file) as stream:
-            losses = Losses()
-            plots = self._plots(stream, losses)
-            first = next(plots, None)
-            if first is None:
-                raise no_plots(stream.file, losses)
-            record, cells = first
-            types = {name: "text" if name in TEXTS else "number" for name in cells}
-            rows = _rows(chain((first,), plots), tuple(types))
-            description = CATEGORIES[record.category].description(types, "id" in types)
-            origin = f"of category {record.category:03d} from source {cells['source']}"
-            remarks = [f"plots {origin}"]
-            yield RecordSource(stream, types, description, rows, losses, remarks, origin)
+            yield self.source_of(stream, Losses())
+
+    def source_of(self, stream: ByteStream, losses: Losses) -> RecordSource:
+        """Plots in the bytes of an open file.
+
+        Parameters
+        ----------
+        stream : ByteStream
+        losses : Losses
+            Gets what is left out.
+
+        Raises
+        ------
+        DataError
+            If it holds no such plots.
+        """
+        plots = self._plots(stream, losses)
+        first = next(plots, None)
+        if first is None:
+            raise no_plots(stream.file, losses)
+        record, cells = first
+        types = {name: "text" if name in TEXTS else "number" for name in cells}
+        rows = _rows(chain((first,), plots), tuple(types))
+        description = CATEGORIES[record.category].description(types, "id" in types)
+        origin = f"of category {record.category:03d} from source {cells['source']}"
+        return RecordSource(stream, types, description, rows, losses, [f"plots {origin}"], origin)
 
     def _plots(self, stream: ByteStream, losses: Losses) -> Iterator[tuple[Record, Cells]]:
         """Records that are plots, all of the category, source and position of the first."""

@@ -100,6 +100,10 @@ class ScanGathering:
         if before < len(rows):
             self._open.append(rows.take(slice(before, len(rows))))
 
+    def pause(self) -> Iterator[Scan]:
+        """The scan so far, which is taken for whole; what comes of it afterwards is late."""
+        yield from self._close()
+
     def finish(self) -> Iterator[Scan]:
         """The last scan, and those of the list after it."""
         yield from self._close()
@@ -119,7 +123,8 @@ class ScanGathering:
             yield from self._listed_until(place)
             time = max(time, float(self._list.times[self._group][place]))
             self._next = place + 1
-        if time <= self._time:
+        again = self._rules.cut.rule == "column" and str(rows.scans[0]) in self._recent
+        if time <= self._time or (again and self._rules.drop_late):
             if not self._rules.drop_late:
                 raise self._out_of_order(rows, time)
             self._findings.late += len(rows)

@@ -132,7 +132,8 @@ class ScanPlots:
         """
         reading = _checked(reading or Reading(), period, lateness, scan)
         _check_sectors(sectors, scan, scans)
-        inputs = inputs_of(plots)
+        # An open source is one of a live feed.
+        inputs = (plots,) if hasattr(plots, "tables") else inputs_of(plots)
         files = PlotFiles.of(inputs, _without_identities(inputs[0], reading), identified=False)
         _check_plots(files.decoder)
         columns = _columns(
@@ -184,7 +185,7 @@ class ScanPlots:
             if gathering is None or word != group:
                 if gathering is not None:
                     yield from ((group, each) for each in gathering.finish())
-                group, gathering = word, self._gathering(word)
+                group, gathering = word, self.gathering(word)
             yield from ((group, each) for each in gathering.advance(part))
         assert gathering is not None
         yield from ((group, each) for each in gathering.finish())
@@ -232,19 +233,33 @@ class ScanPlots:
             raise no_rows(self.files.names[0])
         yield from _held(group, order)
 
-    def _gathering(self, group: str) -> ScanGathering:
+    def live(self) -> ScanPlots:
+        """The same for a feed, whose late plots are counted rather than an error."""
+        late = 0.0 if self.lateness is None and self.cut.rule != "column" else self.lateness
+        return replace(self, lateness=late)
+
+    def clock(self) -> CountedOn:
+        """What counts times on where their clock starts again."""
+        decoder = self.files.decoder
+        wrap = decoder.description.wrap
+        period = decoder.clock.period if wrap == "auto" else wrap
+        return CountedOn(period, wrap == "auto", self.findings)
+
+    def gathering(self, group: str = "", *, drop_late: bool = False) -> ScanGathering:
+        """What puts the rows of a group together as scans."""
         moved = self.list is not None and self.list.has_own and _is_relative(self.files.decoder)
         rules = GatheringRules(
-            self.cut, self.files.decoder, self.columns.scan, moved, self.lateness is not None
+            self.cut,
+            self.files.decoder,
+            self.columns.scan,
+            moved,
+            drop_late or self.lateness is not None,
         )
         return ScanGathering(rules, self.findings, self.list, group)
 
     def _parts(self, rows: int | None, progress: Progress | None) -> Iterator[ScanRows]:
         """Rows of one group each, their times counted on where the clock starts again."""
-        decoder, sort = self.files.decoder, self.files.reading.sort
-        wrap = decoder.description.wrap
-        period = decoder.clock.period if wrap == "auto" else wrap
-        clock = CountedOn(period, wrap == "auto", self.findings)
+        sort, clock = self.files.reading.sort, self.clock()
         pieces = read_rows(
             self.files, self.columns, self.findings, rows=None if sort else rows, progress=progress
         )

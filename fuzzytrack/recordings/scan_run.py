@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from itertools import groupby
+from itertools import chain, groupby
 from typing import Any, Protocol
 
 import numpy as np
@@ -200,8 +200,9 @@ def run_sectors(
     before = last = 0
     for group, parts in groupby(plots, key=lambda pair: pair[0]):
         before = last
-        rows = (part for _, part in parts)
-        done = _sectors_of(scanner, rows, sectors, period, tentative)
+        run = SectorRun(scanner, sectors, period, tentative=tentative)
+        steps = chain((run.advance(part) for _, part in parts), [_later(run.finish)])
+        done = chain.from_iterable(steps)
         for number, (scan, reports) in enumerate(done):
             reports = with_ids_after(reports, before)
             reports = replace(reports, scan=np.full(len(reports), number, dtype=np.int64))
@@ -210,28 +211,49 @@ def run_sectors(
             yield ScannedScan(group, scan, reports)
 
 
-def _sectors_of(
-    scanner: Scanner,
-    parts: Iterator[ScanRows],
-    sectors: int,
-    period: float,
-    tentative: bool,
-) -> Iterator[tuple[Scan, TrackReports]]:
-    """Sectors of one recording."""
-    held: list[ScanRows] = []
-    rows = 0
-    for part in parts:
-        held.append(part)
-        rows += len(part)
-        times = [each.time for each in held if len(each)]
-        if times and rows >= _HELD and times[-1][-1] - times[0][0] >= _TURNS * period:
-            break
-    first = ScanRows.joined(held)
-    if not len(first):
-        return
-    beam = Beam.of(antenna_of(first, period, first.file), float(first.time[0]))
-    sector_pass = SectorPass(scanner.start(), beam, sectors, tentative=tentative)
-    yield from sector_pass.advance(first)
-    for part in parts:
-        yield from sector_pass.advance(part)
-    yield from sector_pass.finish()
+class SectorRun:
+    """One recording, tracked sector by sector once its first turns show where the antenna points.
+
+    Parameters
+    ----------
+    scanner, sectors, period, tentative
+        As for `run_sectors`.
+    """
+
+    def __init__(
+        self, scanner: Scanner, sectors: int, period: float, *, tentative: bool = False
+    ) -> None:
+        self._scanner, self._sectors, self._period = scanner, sectors, period
+        self._tentative = tentative
+        self._held: list[ScanRows] = []
+        self._pass: SectorPass | None = None
+
+    def advance(self, rows: ScanRows) -> Iterator[tuple[Scan, TrackReports]]:
+        """Take in rows in order of time; see `SectorPass.advance`."""
+        if self._pass is not None:
+            yield from self._pass.advance(rows)
+        elif len(rows):
+            self._held.append(rows)
+            span = float(self._held[-1].time[-1] - self._held[0].time[0])
+            if sum(map(len, self._held)) >= _HELD and span >= _TURNS * self._period:
+                yield from self._begun()
+
+    def finish(self) -> Iterator[tuple[Scan, TrackReports]]:
+        """The last sectors."""
+        if self._pass is None and self._held:
+            yield from self._begun()
+        if self._pass is not None:
+            yield from self._pass.finish()
+
+    def _begun(self) -> Iterator[tuple[Scan, TrackReports]]:
+        first, self._held = ScanRows.joined(self._held), []
+        antenna = antenna_of(first, self._period, first.file)
+        beam = Beam.of(antenna, float(first.time[0]))
+        session = self._scanner.start()
+        self._pass = SectorPass(session, beam, self._sectors, tentative=self._tentative)
+        yield from self._pass.advance(first)
+
+
+def _later(made: Callable[[], Iterator[Any]]) -> Iterator[Any]:
+    """An iterator that is made when it is needed."""
+    yield from made()

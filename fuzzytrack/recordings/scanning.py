@@ -188,10 +188,9 @@ class ScanJob:
             As `track_scans`.
         """
         # First, since a tracker that cannot be made needs no files.
-        scanner = as_scanner(config)
+        scanner = scanner_with(config, tracker)
         spec = scanner.name if isinstance(config, ScanTracker) else os.fspath(config)
         if tracker is not None:
-            scanner = with_tracker(scanner, tracker)
             spec = f"{spec} with {tracker}"
         read = ScanPlots.of(plots, reading, **how)
         table = ScanTable.of(read.files.decoder, read.columns.group, output_columns)
@@ -304,8 +303,24 @@ def _together(
         yield group, TrackReports.joined(held)
 
 
-def with_tracker(scanner: ScanTracker, tracker: str) -> ScanTracker:
-    """A scan tracker whose track update is a tracker of this package."""
+def scanner_with(
+    config: ScanTracker | str | os.PathLike[str], tracker: str | None = None
+) -> ScanTracker:
+    """A scan tracker, maybe with a tracker of this package as its track update.
+
+    Parameters
+    ----------
+    config, tracker
+        As for `track_scans`.
+
+    Raises
+    ------
+    ScannerError, ValueError
+        As `track_scans`.
+    """
+    scanner = as_scanner(config)
+    if tracker is None:
+        return scanner
     make = updates.get("tracker")
     return replace(scanner, update=make(tracker))
 

@@ -1,0 +1,151 @@
+"""What `scan --follow` does: plots of a feed answered scan by scan as they come."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Protocol
+
+from fuzzytrack.cli.complaints import printable
+from fuzzytrack.cli.interrupts import Interrupts
+from fuzzytrack.cli.noise_words import noise_sentence
+from fuzzytrack.cli.output import say_aside, say_notes
+from fuzzytrack.cli.output_file import STANDARD_OUTPUT
+from fuzzytrack.io.byte_stream import STANDARD_INPUT
+from fuzzytrack.io.datagrams import DatagramStream, is_address
+from fuzzytrack.io.formats import PARQUET
+from fuzzytrack.io.line_stream import LineStream
+from fuzzytrack.io.line_target import LineTarget
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.track_formats import is_geo
+from fuzzytrack.plurals import counted
+from fuzzytrack.recordings.scan_feed import ScanFeed
+from fuzzytrack.recordings.scan_plots import ScanPlots
+from fuzzytrack.scan.scan_tracker import ScanTracker
+
+__all__ = ["follow_scans"]
+
+
+class _Stream(Protocol):
+    """Items of a feed as they come."""
+
+    def take(self, timeout: float | None = None) -> list[bytes] | None:
+        """Take those that are there; none if none has come in time, None at the end."""
+
+
+def follow_scans(
+    files: list[str],
+    reading: Reading,
+    scanner: ScanTracker,
+    how: dict[str, Any],
+    output: str | None,
+    **options: Any,
+) -> None:
+    """Answer the items of a feed until it ends.
+
+    Parameters
+    ----------
+    files : list of str
+        Standard input, or a port.
+    reading, scanner, how
+        As for `ScanFeed`.
+    output : str or None
+        File for the answers.
+    **options
+        As for `ScanFeed`.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user ends it, after what is held has been answered.
+    ValueError, DataError, OSError
+        As the other commands.
+    """
+    _check(files, output)
+    feed = ScanFeed(
+        reading,
+        scanner,
+        how,
+        datagrams=is_address(files[0]),
+        tell=lambda fault: say_aside(printable(fault)),
+        begin=lambda plots: _begin(plots, scanner),
+        **options,
+    )
+    stream = _stream(files[0])
+    target = LineTarget(None if output == STANDARD_OUTPUT else output)
+    try:
+        with Interrupts() as interrupts, suppress(BrokenPipeError):
+            _answer_all(feed, stream, target, interrupts)
+        _say_sums(feed)
+    finally:
+        target.close()
+        if isinstance(stream, DatagramStream):
+            stream.close()
+    if interrupts.wanted:
+        raise KeyboardInterrupt
+
+
+def _check(files: list[str], output: str | None) -> None:
+    """Raise ValueError for what a live run cannot do."""
+    if len(files) != 1 or not (files[0] == STANDARD_INPUT or is_address(files[0])):
+        raise ValueError(
+            "--follow: reads standard input or a port; write - or udp://127.0.0.1:PORT in place "
+            "of files"
+        )
+    if output is None or output == STANDARD_OUTPUT:
+        return
+    if is_geo(output) or Path(output).suffix.lower() not in (".csv", ".txt", ".json", ".jsonl"):
+        more = "needs the whole recording; " if Path(output).suffix.lower() in PARQUET else ""
+        raise ValueError(f"--output: {output}: {more}--follow writes CSV or lines of JSON")
+
+
+def _stream(place: str) -> _Stream:
+    if is_address(place):
+        return DatagramStream(place)
+    if sys.stdin is None:
+        raise ValueError("--follow: reads standard input, which is closed; pipe the feed into it")
+    return LineStream(sys.stdin.fileno())
+
+
+def _begin(plots: ScanPlots, scanner: ScanTracker) -> None:
+    """Say how plots are read, before the first answer."""
+    decoder = plots.files.decoder
+    say_aside(f"columns: {decoder.columns.sentence.replace('; no id: one track', '')}")
+    say_aside(f"scans: {plots.said}")
+    say_aside(f"configuration: {scanner.name}")
+    say_aside(f"sigma: {noise_sentence(decoder) or 'that of the configuration'}")
+    say_notes((*plots.files.notes, *plots.findings.notes))
+
+
+def _answer_all(
+    feed: ScanFeed, stream: _Stream, target: LineTarget, interrupts: Interrupts
+) -> None:
+    """Answer items until the feed ends, or the user ends it."""
+    silent = False
+    while not interrupts.wanted:
+        timeout = None if silent else feed.pause_after
+        items = interrupts.wait(lambda: stream.take(timeout))  # noqa: B023
+        if items is None:
+            break
+        silent = not items
+        answers = feed.pause() if silent else feed.push(items)
+        if answers:
+            target.write(feed.header, answers)
+    if not interrupts.wanted or feed.stream is not None:
+        answers = feed.finish()
+        if answers:
+            target.write(feed.header, answers)
+
+
+def _say_sums(feed: ScanFeed) -> None:
+    """Print what there was, on standard error."""
+    found = feed.totals.summary
+    parts = [
+        counted(found["scans"], "scan"),
+        counted(found["plots"], "plot"),
+        counted(found["tracks"], "track"),
+    ]
+    say_aside("; ".join(parts))
+    for fault in feed.sentences():
+        say_aside(fault)

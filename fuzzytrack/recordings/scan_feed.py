@@ -1,0 +1,278 @@
+"""A feed of plots without identities: from lines or datagrams to the lines that answer them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Protocol
+
+from fuzzytrack.errors import DataError
+from fuzzytrack.io.datagrams import AsterixDatagrams
+from fuzzytrack.io.line_tables import line_tables
+from fuzzytrack.io.line_texts import csv_text, json_text
+from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.table import Kind, Table, no_rows
+from fuzzytrack.recordings.live_faults import LiveFaults
+from fuzzytrack.recordings.scan_findings import ScanFindings
+from fuzzytrack.recordings.scan_plots import ScanPlots
+from fuzzytrack.recordings.scan_rows import ScanRows, rows_of
+from fuzzytrack.recordings.scan_run import ScannedScan, Scanner, ScanTotals
+from fuzzytrack.recordings.scan_stream import ScanStream
+from fuzzytrack.recordings.scan_table import ScanTable
+
+__all__ = ["FEED", "ScanFeed"]
+
+#: Name of a feed, for messages.
+FEED = "the feed"
+# Items by which the scans must be recognized, and how often that is tried.
+_HELD, _TRIED = 4_000, 200
+# Part of the period of the scans after which a scan is whole if nothing comes.
+_PAUSE = 0.05
+
+
+class _Tables(Protocol):
+    """What reads items of a feed, once the first ones are known."""
+
+    def table(self, items: Any, first: int, kinds: dict[str, Kind]) -> Table:
+        """Table of some items."""
+
+
+class ScanFeed:
+    """Items of a feed, lines or datagrams of ASTERIX, and the lines that answer them.
+
+    Parameters
+    ----------
+    reading : Reading
+        How plots are read.
+    scanner : ScanTracker
+        The scan tracker.
+    how : dict
+        How they are divided into scans, see `ScanPlots.of`.
+    datagrams : bool
+        Whether items are datagrams of ASTERIX rather than lines.
+    output_columns : sequence of str, optional
+        As for `ScanTable.of`.
+    tentative : bool
+        Whether tentative tracks are reported, too.
+    json : bool
+        Whether answers are lines of JSON.
+    quote_formulas : bool
+        As for `fuzzytrack.io.table_writer`.
+    tell : callable, optional
+        Called with a sentence about a fault; see `LiveFaults`.
+    begin : callable, optional
+        Called with the plots before the first answer.
+
+    Attributes
+    ----------
+    stream : ScanStream or None
+        The scan tracker; None until it is known how plots become scans.
+    totals : ScanTotals
+        Counts so far.
+
+    Raises
+    ------
+    ValueError
+        If an option needs the whole recording.
+    """
+
+    def __init__(
+        self,
+        reading: Reading,
+        scanner: Scanner,
+        how: dict[str, Any] | None = None,
+        *,
+        datagrams: bool = False,
+        output_columns: Sequence[str] | None = None,
+        tentative: bool = False,
+        json: bool = False,
+        quote_formulas: bool = False,
+        tell: Callable[[str], None] | None = None,
+        begin: Callable[[ScanPlots], None] | None = None,
+    ) -> None:
+        self._how = dict(how or {})
+        _check(reading, self._how)
+        self.reading, self._scanner, self._columns = reading, scanner, output_columns
+        self._datagrams, self._tentative = datagrams, tentative
+        self._json, self._quotes, self._begin = json, quote_formulas, begin
+        self.faults = LiveFaults(tell)
+        self.items = 0
+        self.totals = ScanTotals()
+        self.stream: ScanStream | None = None
+        self._head: list[Any] = []
+        self._tables: _Tables | None = None
+        self._table: ScanTable | None = None
+
+    @property
+    def header(self) -> bytes:
+        """Line of the names of the answers; empty if they are JSON."""
+        if self._table is None or self._json:
+            return b""
+        names = self._table.names
+        return csv_text({name: [name] for name in names}, names, self._quotes).encode()
+
+    @property
+    def pause_after(self) -> float | None:
+        """Seconds without an item after which `pause` is due; None if it never is."""
+        if self.stream is None or self._how.get("sectors") is not None:
+            return None
+        period = self.stream.plots.cut.period
+        return _PAUSE * period if period > 0 else None
+
+    def push(self, items: Sequence[bytes]) -> bytes:
+        """Take items, and give the answers to them.
+
+        Parameters
+        ----------
+        items : sequence of bytes
+            Whole lines with their ends, or datagrams.
+
+        Returns
+        -------
+        bytes
+            Whole lines; `header`, where there is one, belongs before the first of them.
+
+        Raises
+        ------
+        DataError
+            If the first items do not say how plots are read. What is wrong with later ones is
+            counted.
+        """
+        first = self.items + 1
+        self.items += len(items)
+        texts = list(items) if self._datagrams else self._texts(items, first)
+        if self.stream is None:
+            return self._look(texts)
+        return self._answers(self._rows(texts, first))
+
+    def pause(self) -> bytes:
+        """Answer the scan so far; see `ScanStream.pause`."""
+        return b"" if self.stream is None else self._text(self.stream.pause())
+
+    def finish(self) -> bytes:
+        """End the feed, and answer what is still held.
+
+        Raises
+        ------
+        DataError
+            If there was no plot, or the scans could not be recognized.
+        """
+        answers = b""
+        if self.stream is None:
+            if not self._head:
+                raise no_rows(FEED)
+            answers = self._started(last=True)
+        assert self.stream is not None
+        return answers + self._text(self.stream.finish())
+
+    def sentences(self) -> tuple[str, ...]:
+        """What was wrong with the feed so far, and what was done about it, in words."""
+        found = self.stream.plots.findings.sentences() if self.stream is not None else ()
+        return (*self.faults.sentences(), *found)
+
+    # ---------------------------------------------------------------- the first items
+
+    def _look(self, items: Sequence[Any]) -> bytes:
+        """Hold items until they say how plots are read, and which are of one scan."""
+        before = len(self._head)
+        self._head += items
+        recognized = self._how.get("scan") is None and (
+            self._how.get("period") is None or self._how.get("sectors") is not None
+        )
+        # To recognize scans takes many plots; to try it at each would take long.
+        if recognized and len(self._head) // _TRIED == before // _TRIED:
+            return b""
+        return self._started(last=len(self._head) >= _HELD)
+
+    def _started(self, *, last: bool) -> bytes:
+        """Begin with the items so far, if that is possible; it must be with the last of them."""
+        try:
+            tables: Any = (
+                AsterixDatagrams(FEED, self._head)
+                if self._datagrams
+                else line_tables(FEED, self._head, self.reading.form)
+            )
+            if tables is None:
+                if last:
+                    raise no_rows(FEED)
+                return b""
+            plots = ScanPlots.of(tables, self.reading, **self._how)
+        except DataError:
+            if not last:
+                return b""
+            raise
+        self._tables = tables
+        self._table = ScanTable.of(plots.files.decoder, "", self._columns)
+        self.stream = ScanStream(plots, self._scanner, tentative=self._tentative)
+        if self._begin is not None:
+            self._begin(plots)
+        skip = 0 if self._datagrams else tables.begins
+        held, self._head = self._head[skip:], []
+        return self._answers(self._rows(held, skip + 1))
+
+    # ---------------------------------------------------------------- all items
+
+    def _texts(self, lines: Sequence[bytes], first: int) -> list[str]:
+        """Lines as text; an empty one in place of what is none."""
+        found = []
+        for number, line in enumerate(lines, first):
+            try:
+                found.append(line.decode("utf-8-sig" if number == 1 else "utf-8"))
+            except UnicodeDecodeError:
+                self.faults.add("faulty", f"{FEED}: row {number}: is not UTF-8; left out")
+                found.append("\n")
+        return found
+
+    def _rows(self, items: Sequence[Any], first: int) -> list[ScanRows]:
+        """Plots of some items; faulty ones are found by halves, and left out."""
+        if not items:
+            return []
+        assert self._tables is not None
+        assert self.stream is not None
+        plots, found = self.stream.plots, ScanFindings()
+        kinds = {**plots.files.columns.kinds, **plots.columns.kinds}
+        limit = plots.files.reading.cleaning.fill_limit
+        try:
+            table = self._tables.table(items, first, kinds)
+            rows = rows_of(table, plots.files.decoder, plots.columns, found, limit)
+        except DataError as error:
+            if len(items) == 1:
+                self.faults.add("faulty", f"{error}; left out")
+                return []
+            half = len(items) // 2
+            return [*self._rows(items[:half], first), *self._rows(items[half:], first + half)]
+        plots.findings.impossible.update(found.impossible)
+        plots.findings.fills += found.fills
+        return [rows] if len(rows) else []
+
+    def _answers(self, pieces: Sequence[ScanRows]) -> bytes:
+        assert self.stream is not None
+        return b"".join([self._text(self.stream.advance(rows)) for rows in pieces])
+
+    def _text(self, answers: Iterator[Any]) -> bytes:
+        """Lines of the reports of some scans."""
+        assert self._table is not None
+        table, found = self._table, []
+        for scan, reports in answers:
+            self.totals.add(ScannedScan("", scan, reports))
+            if len(reports):
+                values = table.values("", reports, typed=False)
+                found.append(
+                    json_text(values, table.names)
+                    if self._json
+                    else csv_text(values, table.names, self._quotes)
+                )
+        return "".join(found).encode()
+
+
+def _check(reading: Reading, how: dict[str, Any]) -> None:
+    """Raise ValueError for options that need a whole recording."""
+    if reading.sort:
+        raise ValueError("sort: needs the whole recording; `lateness` puts late plots in order")
+    if reading.format is not None:
+        raise ValueError(
+            f"format: {reading.format}: a feed is CSV, lines of JSON, or datagrams of ASTERIX; "
+            "leave it out"
+        )
+    for name in ("group", "scans"):
+        if how.get(name) is not None:
+            raise ValueError(f"{name}: needs the whole recording; not for a feed")

@@ -1,0 +1,106 @@
+"""The command `scan --follow`: plots that come through a pipe or a port."""
+
+import socket
+import struct
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+COMMAND = (sys.executable, "-m", "fuzzytrack", "scan")
+
+
+def harbor():
+    rng = np.random.default_rng(5)
+    lines = ["scan,t,x,y"]
+    for k in range(20):
+        t = 1.5 * k
+        for x, y in [(3 * t, 40), (-70, 4 * t)]:
+            dx, dy = rng.normal(0, 0.7, 2).tolist()
+            lines.append(f"{k},{t},{x + dx:.3f},{y + dy:.3f}")
+    return "\n".join(lines) + "\n"
+
+
+def test_a_pipe_gives_what_a_file_gives(run, csv, tmp_path):
+    path, out = csv(harbor()), tmp_path / "tracks.csv"
+    assert run("scan", path, "-o", out).exit_code == 0
+    done = subprocess.run(
+        [*COMMAND, "-", "--follow"], input=harbor(), capture_output=True, text=True, check=False,
+        timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == out.read_text()
+    assert done.stderr.splitlines()[0] == "columns: time t; position x, y"
+    assert done.stderr.splitlines()[-1] == "20 scans; 40 plots; 2 tracks"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["plots.csv"], "--follow: reads standard input or a port; write - or udp://127.0.0.1"),
+        (["udp://1.2.3.4:5"], "expected udp://127.0.0.1:PORT"),
+        (["-", "--plot", "a.png"], "--plot: needs the whole recording; not with --follow"),
+        (["-", "--group", "g"], "--group: needs the whole recording"),
+        (["-", "--sort"], "--sort: needs the whole recording"),
+        (["-", "-o", "a.parquet"], "--output: a.parquet: needs the whole recording"),
+        (["-", "-o", "a.ast"], "--output: a.ast: --follow writes CSV"),
+    ],
+)
+def test_what_a_feed_cannot_do(fails, words, said):
+    assert said in fails("scan", *words, "--follow")
+
+
+def block(plots):
+    """Category 048: 010, 140, 020, 040 of (time, range in m, azimuth in deg)."""
+    body = b""
+    for when, distance, azimuth in plots:
+        body += bytes([0b11110000, 1, 2]) + struct.pack(">I", round(when * 128))[1:]
+        body += bytes([0b00100000])
+        body += struct.pack(
+            ">HH", round(distance / 1852 * 256), round(azimuth / 360 * 65536) % 65536
+        )
+    return bytes([48]) + struct.pack(">H", len(body) + 3) + body
+
+
+def test_datagrams_of_asterix(tmp_path):
+    pytest.importorskip("asterix.generated", reason="libasterix is not installed")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    # A range in 1/256 nmi: the noise is that of its steps.
+    command = [*COMMAND, f"udp://127.0.0.1:{port}", "--follow", "--period", "1.5",
+               "--sigma-range", "3", "--sigma-azimuth", "0.1"]  # fmt: skip
+    out = tmp_path / "answers.csv"
+    with out.open("wb") as stream, subprocess.Popen(
+        command, stdout=stream, stderr=subprocess.PIPE, text=True
+    ) as process, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:  # fmt: skip
+        try:
+            _wait_for(port, process)
+            for k in range(25):
+                plots = [(1.5 * k, 900 + 4.5 * k, 20), (1.5 * k, 700, 200 + 0.3 * k)]
+                sender.sendto(block(plots), ("127.0.0.1", port))
+                time.sleep(0.002)
+            sender.sendto(b"", ("127.0.0.1", port))
+            _, said = process.communicate(timeout=120)
+        finally:
+            process.kill()
+    assert process.returncode == 0, said
+    assert said.splitlines()[-1] == "25 scans; 50 plots; 2 tracks"
+    rows = out.read_text().splitlines()
+    assert rows[0].startswith("t,track_id,x,y,")
+    assert len({row.split(",")[1] for row in rows[1:]}) == 2
+
+
+def _wait_for(port, process):
+    """Wait until the port is listened to."""
+    for _ in range(600):
+        if process.poll() is not None:
+            return
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            try:
+                other.bind(("127.0.0.1", port))
+            except OSError:
+                return
+        time.sleep(0.05)
