@@ -66,7 +66,7 @@ COMMANDS = {
     "rulebase": ("rulebase:rulebase", "List, show, copy, check, explain and edit rule bases."),
     "scanner": (
         "scanner:scanner",
-        "List, show, check and copy configurations of scan trackers, and list their parts.",
+        "List, show, check, copy and tune configurations of scan trackers; list their parts.",
     ),
     "design": ("design:design", "Compute gains by a design rule, and show their properties."),
     "completion": (

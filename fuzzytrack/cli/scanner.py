@@ -9,8 +9,9 @@ from typing import Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.complaints import one_line
+from fuzzytrack.cli.complaints import Command, one_line
 from fuzzytrack.cli.output import paragraph, print_json, print_table, say
+from fuzzytrack.cli.scanner_tune import tune
 from fuzzytrack.errors import ScannerError
 from fuzzytrack.scan.scanners.loading import load_configuration, scanner_path, shipped_scanners
 from fuzzytrack.scan.scanners.numbers import values
@@ -23,7 +24,7 @@ __all__ = ["scanner"]
 scanner = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="List, show, check and copy configurations of scan trackers, and list their parts.",
+    help="List, show, check, copy and tune configurations of scan trackers; list their parts.",
     rich_markup_mode=None,
 )
 
@@ -180,6 +181,9 @@ def schema(
     with whole_file(output) as draft:
         draft.write_text(text, encoding="utf-8")
     say(f"wrote {output}")
+
+
+scanner.command("tune", cls=Command)(tune)
 
 
 def _schema_text() -> str:

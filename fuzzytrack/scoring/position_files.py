@@ -25,7 +25,7 @@ from fuzzytrack.io.table import Kind, Table
 from fuzzytrack.plurals import counted
 from fuzzytrack.scoring.positions import KINDS, Positions
 
-__all__ = ["TableOptions", "read_positions", "read_times"]
+__all__ = ["TableOptions", "read_positions", "read_times", "read_truth"]
 
 # Columns of position that are taken where there are no x and y.
 _COMPASS = ("north", "east")
@@ -107,6 +107,30 @@ def read_positions(
     if left_out:
         notes.append(f"tracks: {counted(left_out, 'row')} of tentative tracks left out")
     return (given, there), tuple(notes)
+
+
+def read_truth(truth: PathLike, plots: PlotFiles, options: TableOptions | None = None) -> Positions:
+    """Read true positions in the frame and the time of a recording of plots.
+
+    Parameters
+    ----------
+    truth : str or path
+        The file.
+    plots : PlotFiles
+        The recording.
+    options : TableOptions, optional
+        What the columns of the truth are.
+
+    Raises
+    ------
+    DataError
+        As for `read_positions`, or if the clocks are of different kinds.
+    OSError
+        If the file cannot be read.
+    """
+    found = _opened(truth, "truth", options or TableOptions())
+    found = replace(found, files=_in_frame(found.files, plots))
+    return _read(found, "truth", tentative=True)[0]
 
 
 def _sentence(table: _Opened) -> str:

@@ -212,6 +212,8 @@ def _with_kinds(tracks: Positions, above: float) -> Positions:
     """Tracks with a kind by the speed from their first row to their last one."""
     if not 0 < above < math.inf:
         raise ValueError(f"moving_above: must be a finite speed > 0 m/s, got {above:g}")
+    if not len(tracks):
+        return replace(tracks, kind=np.empty(0, dtype=np.int64))
     keys: list[NDArray[Any]] = [np.unique(tracks.id, return_inverse=True)[1]]
     if tracks.group is not None:
         keys.append(np.unique(tracks.group, return_inverse=True)[1])
