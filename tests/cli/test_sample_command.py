@@ -44,6 +44,17 @@ def test_the_command_that_is_listed_tracks_the_sample(run, tmp_path, monkeypatch
     assert tracks <= first
 
 
+def test_scans_are_tracked_by_the_command_that_is_listed_and_scored(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ("sample", "scans", "-o", "scans.csv", "--truth", "truth.csv", "--json")
+    program, *listed = shlex.split(json.loads(run(*words).stdout)["track"])
+    assert (program, listed[0]) == ("fuzzytrack", "scan")
+    assert run(*listed, "-o", "tracks.csv").exit_code == 0
+    done = run("score", "tracks.csv", "--truth", "truth.csv", "--json")
+    assert done.exit_code == 0, done.stderr
+    assert json.loads(done.stdout)["mean"]["share_tracked"] > 0.7
+
+
 def test_plots_and_truth_are_written(run, tmp_path):
     file, true = tmp_path / "a.csv", tmp_path / "b.csv"
     result = run("sample", "sonar", "-o", file, "--truth", true, "--seed", 5)
