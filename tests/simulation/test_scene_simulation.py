@@ -258,6 +258,22 @@ def test_births_and_lives_have_the_rates_asked_for():
     assert done.sum() == pytest.approx(0.5 * 5600, abs=4 * math.sqrt(2800) + 60)
 
 
+def test_no_plot_is_older_than_its_target():
+    ships = {"ships": TargetGroup(births=5.0, life=20.0)}
+    found = simulate_scans(scene(traffic=ships), seed=8)
+    times = np.concatenate([each.times for each in found.scans])
+    truth = found.truth
+    born = np.full(len(truth.groups), np.inf)
+    np.minimum.at(born, truth.target_id - 1, truth.time)
+    seen = truth.plot >= 0
+    # Of those that are born during a scan, half by half, the beam has passed one half before.
+    first = truth.time == born[truth.target_id - 1]
+    later = truth.time > 2.0
+    assert (times[truth.plot[seen]] > truth.time[seen] - 2.0).all()
+    assert seen[~first].all()
+    assert seen[first & later].mean() == pytest.approx(0.5, abs=0.15)
+
+
 def test_a_target_that_leaves_the_region_does_not_come_back():
     ships = {
         "ships": TargetGroup(count=300, speed=(5, 9), turn_rate=0.1, leg=20, leaves="yes"),

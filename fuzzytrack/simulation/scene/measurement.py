@@ -44,7 +44,9 @@ def target_echoes(
     visible = _in_reach(scene, distance) & ~shaded
     probability = _probability(scene, population, time, distance)
     probability = np.where(shaded, probability * (1 - scene.radar.shadowing), probability)
-    seen = draw.uniform("detection") < probability
+    # A target that appeared after the beam had passed its place has no plot yet.
+    there = time >= population.born[population.target]
+    seen = there & (draw.uniform("detection") < probability)
     place = place + _wander(population, scene, draw)
     noise = _noise(scene, draw, own, place)
     states = np.flatnonzero(seen)
