@@ -127,6 +127,7 @@ class Track:
     ll: float
     weight: float
     held_plots: list
+    looked: float
     hits: int = 1
     misses: int = 0
     shared: int = 0
@@ -195,13 +196,11 @@ class ReferenceMachine:
         self.n = numbers or Numbers()
         self.grids = [Grid(self.n.h), Grid(self.n.h * self.n.h2)]
         self.scans_seen = 0.0  # W
-        self.tracks, self.next_id, self.k, self.time = [], 1, 0, None
+        self.tracks, self.next_id, self.k = [], 1, 0
 
     def step(self, scan):
         n = self.n
         own = np.array(scan.own, float)
-        since = 0.0 if self.time is None else scan.time - self.time
-        self.time = scan.time
         for grid in self.grids:
             grid.decay(math.exp(-1 / n.tau))
         self.scans_seen = self.scans_seen * math.exp(-1 / n.tau) + 1
@@ -211,12 +210,13 @@ class ReferenceMachine:
         for plot in plots:
             plot.lam = self.density(plot.z)
 
-        prior = [self.survived(track, since) for track in self.tracks]
         gated = [
             {j: at for j, plot in enumerate(plots) if (at := self.gated(track, plot)) is not None}
             for track in self.tracks
         ]
         hit = self.assigned(gated, plots)
+        looked = [plots[hit[i]].t if i in hit else scan.time for i in range(len(self.tracks))]
+        prior = [self.survived(*each) for each in zip(self.tracks, looked, strict=True)]
         # Ratio of the likelihood with a target to that of clutter, at the plots in the gate.
         ratio = [
             {j: n.pd * math.exp(at) / plots[j].lam for j, at in near.items()} for near in gated
@@ -292,13 +292,26 @@ class ReferenceMachine:
         )
         return max(fine, n.wl * coarse)
 
-    def survived(self, track, since):
+    def density_at(self, z):
+        """Clutter at a place without a plot."""
+        n = self.n
+        fine, coarse = (
+            (n.lam0 * n.n0 + max(g.read(z), 0.0) / g.cell**2) / (n.n0 + self.scans_seen)
+            for g in self.grids
+        )
+        return max(fine, n.wl * coarse)
+
+    def survived(self, track, time):
+        """Prediction of step 8, over the time since the track was last looked for."""
+        since, track.looked = time - track.looked, time
         chance = sigmoid(track.existence) * self.n.ps ** (since / self.n.period)
         return math.log(chance / (1 - chance))
 
     def gated(self, track, plot):
         """Step 5: log density of the plot at the predicted track, None outside the gate."""
         n = self.n
+        if not plot.t > track.last.t:
+            return None
         p, var = track.at(plot.t, n)
         nu, s = plot.z - p, var[0] * np.eye(2) + plot.r
         if not nu @ np.linalg.solve(s, nu) < n.gate:
@@ -315,7 +328,9 @@ class ReferenceMachine:
         for i, near in enumerate(gated):
             for j, at in near.items():
                 gain = math.log(n.pd / (1 - n.pd)) + at - math.log(plots[j].lam)
-                cost[i, j] = min(-(gain + n.bonus * self.tracks[i].confirmed), -0.001)
+                gain += n.bonus * self.tracks[i].confirmed
+                # Never more than -0.001 in the text; this way two of these differ.
+                cost[i, j] = -gain if gain > 0.001 else -0.001 * math.exp(gain - 0.001)
         return {
             int(i): int(j)
             for i, j in zip(*linear_sum_assignment(cost), strict=True)
@@ -475,6 +490,7 @@ class ReferenceMachine:
             ll=math.log(plot.lam),
             weight=n.w0,
             held_plots=[(self.k, plot.z)],
+            looked=plot.t,
             plot=plot.row,
         )
         self.next_id += 1

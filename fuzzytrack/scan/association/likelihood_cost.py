@@ -18,8 +18,9 @@ def likelihood_cost(
 ) -> Callable[[Any, int, Any, int, float, float], float]:
     """Cost of a pair as a kernel: less the more likely a plot is of the track than clutter.
 
-    ``-ln(PD/(1 - PD)) - ln N(ν; 0, S) + ln λ - bonus`` (the last one for confirmed tracks), but
-    never more than -0.001, so that a plot in the gate is better than none.
+    It is minus the gain ``ln(PD/(1 - PD)) + ln N(ν; 0, S) - ln λ + bonus`` (the last one for
+    confirmed tracks). Gains below 0.001 are taken for ``0.001·exp(gain - 0.001)``, so a plot in the
+    gate is better than none, and the likelier of two unlikely ones better than the other.
     """
     found = math.log(sensor.detection / (1.0 - sensor.detection))
 
@@ -29,6 +30,6 @@ def likelihood_cost(
         gain = found + log_likelihood - plots[j, LOG_DENSITY]
         if tracks[i, STATUS] == 2.0:
             gain += bonus
-        return -gain if gain > 0.001 else -0.001
+        return -gain if gain > 0.001 else -0.001 * math.exp(gain - 0.001)
 
     return cost

@@ -3,5 +3,13 @@
 from fuzzytrack.scan.candidates.all_pairs import AllPairs
 from fuzzytrack.scan.candidates.base import Candidates, CandidatesKernels, candidates
 from fuzzytrack.scan.candidates.grid import GridCandidates
+from fuzzytrack.scan.candidates.sectors import SectorCandidates
 
-__all__ = ["AllPairs", "Candidates", "CandidatesKernels", "GridCandidates", "candidates"]
+__all__ = [
+    "AllPairs",
+    "Candidates",
+    "CandidatesKernels",
+    "GridCandidates",
+    "SectorCandidates",
+    "candidates",
+]

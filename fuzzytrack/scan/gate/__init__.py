@@ -1,6 +1,7 @@
 """Gate: whether a plot may be that of a track."""
 
 from fuzzytrack.scan.gate.base import Gate, GateKernels, gates
+from fuzzytrack.scan.gate.box import BoxGate
 from fuzzytrack.scan.gate.covariance import CovarianceGate
 
-__all__ = ["CovarianceGate", "Gate", "GateKernels", "gates"]
+__all__ = ["BoxGate", "CovarianceGate", "Gate", "GateKernels", "gates"]

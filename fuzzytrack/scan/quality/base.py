@@ -22,7 +22,7 @@ class QualityKernels(NamedTuple):
         ``start(tracks, i, plots, j, clock)``: a track has started at plot j.
     hit : callable
         ``hit(tracks, i, plots, j, clock)``: plot j is that of track i; hits and misses are counted
-        already, state and times are those before.
+        already, the state is corrected, and times are those before.
     miss : callable
         ``miss(tracks, i, clock)``: no plot in this scan; the miss is counted already.
     existence : callable

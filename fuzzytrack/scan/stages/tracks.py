@@ -84,10 +84,11 @@ def follow_stage(
         dt = judge_plot(tracks, i, plots, j)
         tracks[i, HITS] += 1.0
         tracks[i, MISSES] = 0.0
-        quality_hit(tracks, i, plots, j, clock)
-        kind_hit(tracks, i, plots, j, clock)
+        # The update goes by the quality that the track had before, which its gate went by, too.
         if tracks[i, HITS] != 2.0 or not second(tracks, i, plots, j, dt):
             update_hit(tracks, i, plots, j, clock)
+        quality_hit(tracks, i, plots, j, clock)
+        kind_hit(tracks, i, plots, j, clock)
         confirmation_hit(tracks, i, plots, j, clock)
         tracks[i, TIME] = tracks[i, LOOKED] = plots[j, PLOT_TIME]
         tracks[i, PLOT] = plots[j, RECORDED]
