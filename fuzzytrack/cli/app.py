@@ -44,7 +44,7 @@ COMMANDS = {
     ),
     "simulate": (
         "simulate:simulate",
-        "Write the plots of a simulated target, beside the truth.",
+        "Write the plots of a simulated target, or the scans of a scene of many targets.",
     ),
     "surface": ("surface:surface", "Draw the control surface of a rule base."),
     "certify": (

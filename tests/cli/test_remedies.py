@@ -120,7 +120,7 @@ def test_parameters_in_a_list_of_trackers(fails):
         ("track a.csv --runs 5", "error: No such option: --runs; it belongs to demo, compare, "),
         (
             "surface maneuver --json",
-            "error: No such option: --json; it belongs to demo, sample, track, compare, and ",
+            "error: No such option: --json; it belongs to demo, sample, track, scan, and ",
         ),
         ("cache --at E=1", "error: No such option: --at; it belongs to surface, rulebase explain"),
         (
