@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
+
+import numpy as np
 
 from fuzzytrack.cli.complaints import printable
 from fuzzytrack.cli.interrupts import Interrupts
@@ -22,9 +25,13 @@ from fuzzytrack.io.track_formats import is_geo
 from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.scan_feed import ScanFeed
 from fuzzytrack.recordings.scan_plots import ScanPlots
+from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scan_tracker import ScanTracker
 
 __all__ = ["follow_scans"]
+
+# Collections of younger objects before all are looked at.
+_NEVER = 1_000_000_000
 
 
 class _Stream(Protocol):
@@ -73,6 +80,11 @@ def follow_scans(
         **options,
     )
     stream = _stream(files[0])
+    # Compiled code is there before the first plots come.
+    scanner.start().step(Scan(0.0, np.zeros((1, 2))))
+    thresholds = gc.get_threshold()
+    # To look through all that lives for garbage takes as long as many scans.
+    gc.set_threshold(*thresholds[:2], _NEVER)
     target = LineTarget(None if output == STANDARD_OUTPUT else output)
     try:
         with Interrupts() as interrupts, suppress(BrokenPipeError):
@@ -80,6 +92,7 @@ def follow_scans(
         _say_sums(feed)
     finally:
         target.close()
+        gc.set_threshold(*thresholds)
         if isinstance(stream, DatagramStream):
             stream.close()
     if interrupts.wanted:
