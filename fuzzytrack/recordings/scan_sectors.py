@@ -1,10 +1,11 @@
 """Plots of a turning antenna, tracked sector by sector behind the beam.
 
 A turn has N sectors, counted on from turn to turn. When the beam has passed the end of sector
-q + 1, the tracks in sector q are due: they get the plots of the sectors q - 1 to q + 1 that no
-track has used. Then all tracks that could use a plot of sector q - 1 have been due, and a plot
-there that is left starts a track. So the report of a track comes between one and two sectors after
-the beam has passed it, and a start one sector later; scan by scan it is up to a turn.
+q + 1, the tentative tracks in sector q are due, and the confirmed ones half a sector ahead of them:
+they get the plots of the sectors q - 1 to q + 1 that no track has used. Then all tracks that could
+use a plot of sector q - 1 have been due, and a plot there that is left starts a track. So the
+report of a track comes at most two sectors after the beam has passed it, and a start one sector
+later; scan by scan it is up to a turn.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.recordings.scan_rhythm import AntennaTurn
 from fuzzytrack.recordings.scan_rows import ScanRows
 from fuzzytrack.scan.scan import Scan
-from fuzzytrack.scan.track_reports import TrackReports
+from fuzzytrack.scan.track_reports import STATUSES, TrackReports
 
 __all__ = ["Beam", "SectorPass"]
 
@@ -30,6 +31,9 @@ __all__ = ["Beam", "SectorPass"]
 _ANGLE_GAIN, _RATE_GAIN = 0.1, 0.02
 # A longer silence is so many turns without a plot, and then a gap.
 _MOST_SILENT = 100
+# How much earlier a confirmed track is due than a tentative one, in sectors.
+_EARLIER = 0.5
+_TENTATIVE = STATUSES.index("tentative")
 _FULL = 2 * math.pi
 
 
@@ -235,7 +239,11 @@ class SectorPass:
         ahead = (time - tracks.time)[:, None]
         offset = tracks.position + ahead * tracks.velocity - self._own
         share = np.arctan2(offset[:, 0], offset[:, 1]) / _FULL
-        place = np.floor((share if self._beam.clockwise else -share) * n).astype(np.int64)
+        # Confirmed tracks come half a sector earlier, so that no tentative one on the other side of
+        # a border takes their plots.
+        early = np.where(tracks.status == _TENTATIVE, 0.0, _EARLIER)
+        turned = (share if self._beam.clockwise else -share) * n
+        place = np.floor(turned - early).astype(np.int64)
         behind = np.mod(sector - place, n)
         # A new track was made by a plot that is two sectors back.
         live = {id: self._done.get(id, sector - 2) for id in ids.tolist()}
