@@ -3,6 +3,7 @@
 from fuzzytrack.scan.candidates.all_pairs import AllPairs
 from fuzzytrack.scan.candidates.base import Candidates, CandidatesKernels, candidates
 from fuzzytrack.scan.candidates.grid import GridCandidates
+from fuzzytrack.scan.candidates.kd_tree import KdTree
 from fuzzytrack.scan.candidates.sectors import SectorCandidates
 
 __all__ = [
@@ -10,6 +11,7 @@ __all__ = [
     "Candidates",
     "CandidatesKernels",
     "GridCandidates",
+    "KdTree",
     "SectorCandidates",
     "candidates",
 ]

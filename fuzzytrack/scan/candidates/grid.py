@@ -19,6 +19,8 @@ _ACROSS, _UP, _COLUMNS, _CALLS, _HEAD = 0, 1, 2, 3, 4
 _LEAST, _MOST_CELLS, _MOST_IN_CELL, _MOST = 64, 4096, 64, 4096
 #: Plots that the cell of a plot holds on average, from which cells are halved; how often.
 _CROWDED, _HALVINGS = 16.0, 12
+#: Share of that which may be left, or cells are not halved.
+_WORTH = 0.8
 
 
 def _table(plots: int) -> int:
@@ -102,10 +104,14 @@ class GridCandidates(Candidates):
                 columns - 1, size // columns - 1, columns,
             )  # fmt: skip
             side = first_side(plots, count)
-            halvings = 0
-            while fill(plots, count, side, integers, size) > _CROWDED and halvings < _HALVINGS:
-                side *= 0.5
-                halvings += 1
+            crowd, halvings = fill(plots, count, side, integers, size), 0
+            while crowd > _CROWDED and halvings < _HALVINGS:
+                less = fill(plots, count, 0.5 * side, integers, size)
+                if less > _WORTH * crowd:
+                    # Plots at one spot, which no cells can part.
+                    fill(plots, count, side, integers, size)
+                    break
+                crowd, side, halvings = less, 0.5 * side, halvings + 1
             scale = 1.0 / side
             numbers[0] = scale
             begin = 0
