@@ -215,3 +215,20 @@ def test_clutter_out_of_reach_is_not_seen_and_has_times_of_the_beam():
         assert ((distance >= 20) & (distance <= 100)).all()
         turn = np.mod(np.arctan2(east, north), 2 * math.pi) / (2 * math.pi)
         np.testing.assert_allclose(each.times, each.time - 2 * (1 - turn), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        UniformClutter(count=1e6),
+        UniformClutter(density=1e30),
+        SteadyPoints(count=100_000),
+        Shoreline(line=((0, 0), (1e9, 0)), spacing=1),
+        CreepingGlints(births=1e4, life=1e6),
+        EchoGroups(births=1.0, life=100.0, members=1e4),
+    ],
+    ids=lambda part: type(part).__name__,
+)
+def test_clutter_that_no_memory_would_hold_is_refused(part):
+    with pytest.raises(ValueError, match=r"the scene has clutter of some .* plots, more than 5000"):
+        drawn(part, view(1000))

@@ -15,7 +15,10 @@ from fuzzytrack.simulation.scene.region import Region
 from fuzzytrack.simulation.scene.settings import Settings
 from fuzzytrack.simulation.scene.streams import Streams
 
-__all__ = ["Clutter", "ClutterPlots", "View"]
+__all__ = ["MOST_PLOTS", "Clutter", "ClutterPlots", "View", "refuse_too_many"]
+
+#: Most plots of a kind of clutter, so that a scene cannot ask for more memory than a computer has.
+MOST_PLOTS = 50_000_000
 
 #: Number of the scan of each plot, and its place, shape (n, 2).
 ClutterPlots = tuple[NDArray[np.int64], Array]
@@ -71,3 +74,18 @@ class Clutter(Settings, ABC):
         place : ndarray, shape (n, 2)
             Its place (m).
         """
+
+
+def refuse_too_many(expected: float) -> None:
+    """ValueError if clutter of this expected number of plots, or of what makes them, is too much.
+
+    Parameters
+    ----------
+    expected : float
+        In all scans together.
+    """
+    if not expected <= MOST_PLOTS:
+        raise ValueError(
+            f"the scene has clutter of some {expected:.3g} plots, more than {MOST_PLOTS}; simulate "
+            "fewer scans or less clutter"
+        )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.simulation.scene.clutter import Clutter, ClutterPlots, View
+from fuzzytrack.simulation.scene.clutter import Clutter, ClutterPlots, View, refuse_too_many
 from fuzzytrack.simulation.scene.region import Region
 from fuzzytrack.simulation.scene.settings import setting
 from fuzzytrack.simulation.scene.streams import Streams
@@ -44,6 +44,8 @@ class PassingClutter(Clutter):
         """When sources appear and vanish (s)."""
         rng = streams.stream("births")
         duration = view.times[-1] - view.start
+        # Of each there is a place for each scan.
+        refuse_too_many(self.births * (self.life + duration) * len(view.times))
         there, later = rng.poisson(self.births * np.array([self.life, duration]))
         # What is left of an exponential life has the same distribution.
         born = np.append(np.zeros(there), rng.random(later) * duration) + view.start
@@ -144,6 +146,7 @@ class EchoGroups(PassingClutter):
         self, view: View, streams: Streams, born: Array, source: Whole, scan: Whole
     ) -> ClutterPlots:
         n = len(born)
+        refuse_too_many(self.members * len(scan))
         numbers = streams.stream("members").poisson(self.members, len(scan))
         source, scan = np.repeat(source, numbers), np.repeat(scan, numbers)
         first = np.searchsorted(view.times, born).clip(max=len(view.times) - 1)

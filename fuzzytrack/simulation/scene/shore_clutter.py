@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.simulation.scene.clutter import Clutter, ClutterPlots, View
+from fuzzytrack.simulation.scene.clutter import Clutter, ClutterPlots, View, refuse_too_many
 from fuzzytrack.simulation.scene.region import Region
 from fuzzytrack.simulation.scene.settings import setting
 from fuzzytrack.simulation.scene.streams import Streams
@@ -46,6 +46,7 @@ class SteadyPoints(Clutter):
         else:
             points = (self.within or view.region).draw(streams.stream("place"), self.count)
         shape = (len(points), len(view.times))
+        refuse_too_many(math.prod(shape))
         seen = streams.stream("detection").random(shape) < self.detection
         point, scan = np.nonzero(seen)
         shift = streams.stream("spread").standard_normal((*shape, 2))[point, scan]
@@ -93,7 +94,9 @@ class Shoreline(Clutter):
     def plots(self, view: View, streams: Streams) -> ClutterPlots:
         """Draw its plots in all scans."""
         ends = np.concatenate([[0.0], np.cumsum(self._lengths())])
-        numbers = streams.stream("count").poisson(ends[-1] / self.spacing, len(view.times))
+        mean = ends[-1] / self.spacing
+        refuse_too_many(mean * len(view.times))
+        numbers = streams.stream("count").poisson(mean, len(view.times))
         scan = np.repeat(np.arange(len(view.times)), numbers)
         along = streams.stream("place").random(len(scan)) * ends[-1]
         points = np.array(self.line)

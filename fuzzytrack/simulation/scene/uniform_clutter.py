@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fuzzytrack.simulation.scene.clutter import Clutter, ClutterPlots, View
+from fuzzytrack.simulation.scene.clutter import Clutter, ClutterPlots, View, refuse_too_many
 from fuzzytrack.simulation.scene.region import Region
 from fuzzytrack.simulation.scene.settings import setting
 from fuzzytrack.simulation.scene.streams import Streams
@@ -45,6 +45,7 @@ class UniformClutter(Clutter):
         region = self.within or view.region
         mean = (self.density or 0.0) * region.area if self.count is None else self.count
         scans = len(view.times)
+        refuse_too_many(mean * scans)
         if self.exact == "yes":
             numbers = np.full(scans, round(mean))
         else:
