@@ -69,3 +69,14 @@ def test_the_guide_of_tuning(run):
     assert Path("tuned.yaml").read_text().count("# Tuned on radar.csv with seed 0") == 1
     assert Path("tracks.csv").read_text().startswith("track,time,")
     assert Path("tracks.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
+def test_the_guide_from_plots_to_tracks(run):
+    commands = list(WALK["commands"]((ROOT / "docs" / "scan.md").read_text()))
+    assert any(" scan " in words for words, _ in commands)
+    for words, expected in commands:
+        printed = run(words)
+        assert [line for line in expected if line.split() not in printed] == []
+    assert Path("tracks.csv").read_text().startswith("t,track_id,x,y,")
+    assert Path("tracks.png").read_bytes().startswith(b"\x89PNG")

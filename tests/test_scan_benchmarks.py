@@ -169,11 +169,12 @@ def test_the_script_of_crowded_water(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(
         scan_rivals, "traffic", lambda seed, real=scan_rivals.traffic: real(seed, 8, 12)
     )
+    monkeypatch.setattr(scan_rivals, "TOLD", "default")
     out, kept = tmp_path / "figures.json", tmp_path / "kept"
     arguments = ["--seeds", "2", "--keep", str(kept), "-o", str(out)]
     assert scan_rivals.main(arguments) == 0
     first = out.read_text()
-    names = ("default", "default-sensor-period-1-678")
+    names = ("default", "default-sensor-period-1-678", "default-told")
     assert {each.name for each in kept.iterdir()} == {
         f"{name}-{seed}.npz" for name in names for seed in (0, 1)
     }
