@@ -60,7 +60,7 @@ class ScanGates:
         return summary(self, tracks=len(self.predicted), taken=int((self.taken >= 0).sum()))
 
 
-def scan_gates(session: ScanSession, scan: Scan, *, directions: int = 48) -> ScanGates:
+def scan_gates(session: ScanSession, scan: Scan, *, directions: int = 96) -> ScanGates:
     """Gates of all tracks of a session, which stays as it is before the scan.
 
     Parameters

@@ -1,19 +1,21 @@
 """Gates of a scan: their outlines against what the session itself accepts."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fuzzytrack.scan import Scan, ScanTracker
+from fuzzytrack.scan.gate import gates
 from fuzzytrack.scan.scan_gates import scan_gates
 
 PERIOD = 1.7
 
 
-def session_after(count, covariances=None):
+def session_after(count, covariances=None, gate="covariance"):
     """A target that is seen in so many scans."""
-    session = ScanTracker().start()
+    session = replace(ScanTracker(), gate=gates.get(gate)()).start()
     for k in range(count):
         place = np.array([[300.0 + 4.0 * k, 200.0 - 3.0 * k]])
         given = None if covariances is None else np.array([covariances])
@@ -37,12 +39,23 @@ def test_a_plot_is_taken_inside_of_the_outline_and_not_outside(count, wait, cova
     session = session_after(count, covariances)
     time = PERIOD * (count - 1 + wait)
     given = None if covariances is None else np.array([covariances])
-    gates = scan_gates(session, Scan(time, np.array([[9e3, 9e3]]), given), directions=8)
-    (middle,), (outline,) = gates.predicted, gates.outlines
+    found = scan_gates(session, Scan(time, np.array([[9e3, 9e3]]), given), directions=8)
+    (middle,), (outline,) = found.predicted, found.outlines
     for corner in outline:
         assert np.hypot(*(corner - middle)) > 1
         assert takes(session, time, middle + 0.98 * (corner - middle), covariances)
         assert not takes(session, time, middle + 1.02 * (corner - middle), covariances)
+
+
+@pytest.mark.parametrize("gate", ["round", "box"])
+def test_outlines_are_those_of_the_gate_whatever_its_part(gate):
+    session = session_after(8, gate=gate)
+    time = 8 * PERIOD
+    found = scan_gates(session, Scan(time, np.array([[9e3, 9e3]])), directions=8)
+    (middle,), (outline,) = found.predicted, found.outlines
+    for corner in outline:
+        assert takes(session, time, middle + 0.98 * (corner - middle))
+        assert not takes(session, time, middle + 1.02 * (corner - middle))
 
 
 def test_the_session_stays_as_it_is():
@@ -61,18 +74,18 @@ def test_taken_plots_are_named_by_their_place_in_the_scan():
     moved = np.array([0.0, 12.0])
     plots = np.array([[5e3, 5e3], places[2] + moved, places[1] + moved])
     for rows in (None, np.array([70, 30, 50])):
-        gates = scan_gates(session, Scan(PERIOD * 6, plots, rows=rows))
-        assert gates.tracks.track_id.tolist() == [1, 2, 3]
-        assert gates.taken.tolist() == [-1, 2, 1]
-    gates = scan_gates(session, Scan(PERIOD * 6, np.empty((0, 2)), rows=np.empty(0, np.int64)))
-    assert gates.taken.tolist() == [-1, -1, -1]
+        found = scan_gates(session, Scan(PERIOD * 6, plots, rows=rows))
+        assert found.tracks.track_id.tolist() == [1, 2, 3]
+        assert found.taken.tolist() == [-1, 2, 1]
+    found = scan_gates(session, Scan(PERIOD * 6, np.empty((0, 2)), rows=np.empty(0, np.int64)))
+    assert found.taken.tolist() == [-1, -1, -1]
 
 
 def test_without_a_track_there_is_no_gate():
-    gates = scan_gates(ScanTracker().start(), Scan(0.0, np.array([[1.0, 2.0]])))
-    assert gates.predicted.shape == (0, 2)
-    assert gates.outlines.shape == (0, 48, 2)
-    assert repr(gates) == "<ScanGates: tracks=0, taken=0>"
+    found = scan_gates(ScanTracker().start(), Scan(0.0, np.array([[1.0, 2.0]])))
+    assert found.predicted.shape == (0, 2)
+    assert found.outlines.shape == (0, 96, 2)
+    assert repr(found) == "<ScanGates: tracks=0, taken=0>"
 
 
 def test_a_scan_with_rows_but_without_a_plot_is_a_miss():
