@@ -93,6 +93,27 @@ def test_datagrams_of_asterix(tmp_path):
     assert len({row.split(",")[1] for row in rows[1:]}) == 2
 
 
+def test_asterix_in_and_out_over_midnight(run, tmp_path):
+    pytest.importorskip("asterix.generated", reason="libasterix is not installed")
+    plots, tracks = tmp_path / "plots.ast", tmp_path / "tracks.ast"
+    data = b""
+    for k in range(25):
+        clock = (86390 + 1.5 * k) % 86400
+        data += block([(clock, 900 + 4.5 * k, 20), (clock, 700, 200 + 0.3 * k)])
+    plots.write_bytes(data)
+    result = run(
+        "scan", plots, "--sigma-range", "3", "--sigma-azimuth", "0.1", "-o", tracks
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    assert "scans: plots of equal time are a scan; one every 1.5 s" in result.stdout
+    assert "1 time that the clock started again" in result.stdout
+    again = run("track", tracks)
+    assert again.exit_code == 0, again.output
+    assert [line.split()[0] for line in again.stdout.splitlines() if line[:1] == "T"] == [
+        "T1", "T2",
+    ]  # fmt: skip
+
+
 def _wait_for(port, process):
     """Wait until the port is listened to."""
     for _ in range(600):
