@@ -75,6 +75,49 @@ def test_the_command_line_tracks_with_the_plugin(environment, tmp_path):
     assert json.loads(done.stdout)["total"]["alpha"] == 0.5
 
 
+CONFIGURATION = """\
+name: mine
+based_on: default
+association: {part: first-come, bonus: 2}
+"""
+
+
+def test_a_configuration_names_the_association(environment, tmp_path):
+    scripts, _ = environment
+    (tmp_path / "mine.yaml").write_text(CONFIGURATION)
+    done = run(scripts / "fuzzytrack", "scanner", "check", "mine.yaml", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)[0]["association"] == {"part": "first-come", "bonus": 2.0}
+    done = run(scripts / "fuzzytrack", "scanner", "parts", "association", "--json", cwd=tmp_path)
+    found = {row["part"]: row["package"] for row in json.loads(done.stdout)}
+    assert found["first-come"] == "fuzzytrack-two-speed"
+    (tmp_path / "mine.yaml").write_text(CONFIGURATION.replace("bonus: 2", "bonus: -2"))
+    done = run(scripts / "fuzzytrack", "scanner", "check", "mine.yaml", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("mine.yaml:3:40: association: bonus must be a number >= 0")
+
+
+def test_a_scan_tracker_with_the_association_tracks(environment, tmp_path):
+    """In plain Python: nothing is compiled, so that the test takes no longer than it must."""
+    scripts, _ = environment
+    (tmp_path / "mine.yaml").write_text(CONFIGURATION)
+    code = """
+import numpy as np
+from fuzzytrack.scan import Scan
+from fuzzytrack.scan.scan_session import ScanSession
+from fuzzytrack.scan.scanners import load_scanner
+
+session = ScanSession(load_scanner("mine.yaml"), plain=True)
+for k in range(12):
+    plots = np.array([[3.0 * k, 50.0], [-80.0, 4.0 * k]])
+    reports = session.step(Scan(1.7 * k, plots))
+print(*reports.track_id)
+"""
+    done = run(scripts / "python", "-c", code, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["1", "2"]
+
+
 @pytest.mark.parametrize(
     ("page", "module", "words"),
     [
@@ -92,14 +135,16 @@ def test_the_plugin_is_that_of_the_page(page, module, words):
     assert package.read_text().endswith(code)
 
 
-def test_the_wheel_carries_the_rule_bases(environment, tmp_path):
+def test_the_wheel_carries_rule_bases_and_configurations(environment, tmp_path):
     scripts, site = environment
     code = (
         "import fuzzytrack as ft; print(ft.__file__); "
-        "print(*(ft.load_rulebase(name).name for name in ft.shipped_rulebases()))"
+        "print(*(ft.load_rulebase(name).name for name in ft.shipped_rulebases())); "
+        "print(*(ft.load_scanner(name).name for name in ft.shipped_scanners()))"
     )
     done = run(scripts / "python", "-c", code, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    where, names = done.stdout.splitlines()
+    where, names, scanners = done.stdout.splitlines()
     assert Path(where).is_relative_to(site)
     assert "stiffness-damping" in names.split()
+    assert {"default", "zhang-jiang"} <= set(scanners.split())

@@ -116,7 +116,8 @@ def kernels_in_form(part: Any, seed: int) -> None:
         f"memory must be a whole number >= 0, got {part.memory!r}",
     )
     found = _kernels(part)
-    wanted = typing.get_type_hints(type(part).kernels)["return"]
+    base: Any = ROLES[str(role_of(part))].base
+    wanted = typing.get_type_hints(base.kernels)["return"]
     expect(
         isinstance(found, wanted),
         f"kernels must return {wanted.__name__}, got {type(found).__name__}",

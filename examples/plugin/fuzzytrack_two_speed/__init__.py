@@ -1,4 +1,4 @@
-"""A scheduler, a tracker, a normalization and a reader, found by fuzzytrack by entry points."""
+"""Plug-ins of all kinds, found by fuzzytrack by entry points."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -6,9 +6,10 @@ from typing import ClassVar
 from fuzzytrack.normalizations import Normalization
 from fuzzytrack.schedulers import GainScheduler
 from fuzzytrack_two_speed.averaged import Averaged
+from fuzzytrack_two_speed.first_come import FirstCome
 from fuzzytrack_two_speed.sonar_log import SonarLog
 
-__all__ = ["Averaged", "SoftSign", "SonarLog", "TwoSpeed"]
+__all__ = ["Averaged", "FirstCome", "SoftSign", "SonarLog", "TwoSpeed"]
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,12 @@
 import pytest
-from fuzzytrack_two_speed import Averaged, SoftSign, SonarLog, TwoSpeed
+from fuzzytrack_two_speed import Averaged, FirstCome, SoftSign, SonarLog, TwoSpeed
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.io import open_table
 from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
+from fuzzytrack.scan.association import associations
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.testing import check_scheduler, parametrize_with_checks
 from fuzzytrack.trackers import ParallelBank, trackers
@@ -16,9 +17,10 @@ def test_entry_points_are_found():
     assert trackers.get("averaged") is Averaged
     assert normalizations.get("soft-sign") is SoftSign
     assert readers.get("sonar-log") is SonarLog
+    assert associations.get("first-come") is FirstCome
 
 
-@parametrize_with_checks([TwoSpeed(threshold=2.0), Averaged(quiet=0.2)])
+@parametrize_with_checks([TwoSpeed(threshold=2.0), Averaged(quiet=0.2), FirstCome(bonus=1.0)])
 def test_contract(check):
     check()
 

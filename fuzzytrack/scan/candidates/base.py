@@ -40,6 +40,11 @@ class CandidatesKernels(NamedTuple):
 class Candidates(Part):
     """Finds the plots near a track."""
 
+    @property
+    def may_miss(self) -> bool:
+        """Whether `near` may leave out plots that are within reach."""
+        return False
+
     def integers(self, plots: int) -> int:
         """How many whole numbers it needs for a scan with so many plots."""
         return 0

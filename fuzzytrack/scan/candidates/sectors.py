@@ -35,6 +35,11 @@ class SectorCandidates(Candidates):
         "spanned", "adjacent",
     )  # fmt: skip
 
+    @property
+    def may_miss(self) -> bool:
+        """As published, plots beyond the sectors next to a track are not found."""
+        return self.search == "adjacent"
+
     def integers(self, plots: int) -> int:
         """Where each sector begins, and the sector of each plot."""
         return self.sectors + 1 + plots
