@@ -22,7 +22,7 @@ from fuzzytrack.scan.quality import Existence, Quality
 from fuzzytrack.scan.report import Recent, Report
 from fuzzytrack.scan.sensor import Sensor
 from fuzzytrack.scan.track_columns import FIXED
-from fuzzytrack.scan.update import Transient, Update
+from fuzzytrack.scan.update import Companion, Transient, Update
 
 __all__ = ["ScanParts"]
 
@@ -93,6 +93,10 @@ class ScanParts:
             found[role] = at
             at += getattr(self, role).memory
         return found
+
+    def companion(self) -> Companion | None:
+        """What a session keeps for the update beside the array of tracks, if anything."""
+        return self.update.companion(self.places()["update"])
 
     @property
     def width(self) -> int:

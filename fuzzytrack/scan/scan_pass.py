@@ -20,6 +20,7 @@ from fuzzytrack.scan.stages.pairs import assignment_stage, pairs_stage
 from fuzzytrack.scan.stages.plots import DONE, density_stage, plots_stage
 from fuzzytrack.scan.stages.reports import report_stage
 from fuzzytrack.scan.stages.tracks import follow_stage, start_stage
+from fuzzytrack.scan.update.companion import Companion
 
 __all__ = ["PAIRS", "ScanPass", "compiling_by_stage", "learn_code", "scan_pass", "sharing_code"]
 
@@ -132,7 +133,8 @@ def _alone(function: Callable[..., Any]) -> Callable[..., Any]:
 def _made(tracker: ScanParts, compile: Compile, by_stage: bool = False) -> ScanPass:
     """Stages of a tracker, compiled as far as they can be."""
     stages, density, in_python = _stages(tracker)
-    if not (by_stage or any(in_python)):
+    apart = by_stage or tracker.companion() is not None
+    if not (apart or any(in_python)):
         whole = _compiled(tracker, _one_function(stages), compile)
         return ScanPass(whole, _compiled(tracker, stages.report, compile), density, True)
     mixed = Stages(
@@ -235,23 +237,29 @@ def _one_function(stages: Stages) -> FunctionType:
 
 
 def _in_turn(stages: Stages) -> Callable[..., int]:
-    """The stages one after the other, called from Python."""
+    """The stages one after the other, called from Python, and a companion between them."""
+    number = {name: k for k, name in enumerate(Stages._fields)}
 
     def run(
-        work: Any,
-        positions: Any,
-        covariances: Any,
-        times: Any,
-        may_start: Any,
-        rows: Any,
-        begin: int,
-    ) -> int:
+        work: Any, positions: Any, covariances: Any, times: Any, may_start: Any, rows: Any,
+        begin: int, companion: Companion | None = None,
+    ) -> int:  # fmt: skip
+        before: dict[int, Callable[[Any], None]] = {}
+        if companion is not None:
+            before = {
+                number["pairs"]: companion.predict,
+                number["follow"]: companion.correct,
+                number["start"]: companion.end,
+                number["report"]: companion.start,
+            }
         if begin == 0:
             answer = stages.plots(work, positions, covariances, times, may_start, rows)
             if answer != DONE:
                 return answer
-        for stage in stages[max(begin, 1) :]:
-            answer = stage(work)
+        for k in range(max(begin, 1), len(stages)):
+            if k in before:
+                before[k](work)
+            answer = stages[k](work)
             if answer != DONE:
                 return answer
         return DONE

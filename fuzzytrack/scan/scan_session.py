@@ -61,6 +61,7 @@ class ScanSession:
         self.tracker, self._plain = tracker, plain
         self._pass = scan_pass(tracker, plain)
         self._work = new_workspace(tracker)
+        self._companion = tracker.companion()
         self._work.clock[SCAN_TIME], self._work.clock[SCAN] = -np.inf, -1.0
 
     def __repr__(self) -> str:
@@ -191,10 +192,11 @@ class ScanSession:
         counts[TENTATIVE_TOO] = tentative
         saved = None if self._pass.compiled else self._saved()
         try:
-            answer = self._pass.run(work, *arrays, 0)
+            beside = () if self._companion is None else (self._companion,)
+            answer = self._pass.run(work, *arrays, 0, *beside)
             while answer == MORE_EDGES:
                 self._work = work = with_edges(work, self.tracker)
-                answer = self._pass.run(work, *arrays, PAIRS)
+                answer = self._pass.run(work, *arrays, PAIRS, *beside)
         except BaseException:
             if saved is not None:
                 self._restore(saved)
@@ -224,22 +226,26 @@ class ScanSession:
 
     def _saved(self) -> dict[str, Any]:
         """What lasts, as it is now."""
-        return {name: getattr(self._work, name).copy() for name in LASTING}
+        saved = {name: getattr(self._work, name).copy() for name in LASTING}
+        beside = None if self._companion is None else self._companion.copy()
+        return {**saved, "companion": beside}
 
     def _restore(self, saved: dict[str, Any]) -> None:
+        self._companion = saved.pop("companion")
         self._work = self._work._replace(**saved)
 
     def __getstate__(self) -> dict[str, Any]:
         work, rows = self._work, int(self._work.counts[ROWS])
         cells = np.flatnonzero(work.cells)
         return {
-            "tracker": self.tracker, "plain": self._plain,
+            "tracker": self.tracker, "plain": self._plain, "companion": self._companion,
             "tracks": work.tracks[:rows].copy(), "clock": work.clock, "counts": work.counts,
             "kept": work.kept, "cells": (cells, work.cells[cells]),
         }  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(state["tracker"], plain=state["plain"])  # type: ignore[misc]
+        self._companion = state["companion"]
         rows = len(state["tracks"])
         self._work = with_room(self._work, self.tracker, rows, 0, 0)
         work = self._work

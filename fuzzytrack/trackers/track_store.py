@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import operator
 
@@ -89,6 +90,14 @@ class TrackStore:
     def __len__(self) -> int:
         """Number of tracks."""
         return self._used - len(self._free)
+
+    def copy(self) -> TrackStore:
+        """Another store with the same tracks in the same slots."""
+        made = copy.copy(self)
+        made._numbers, made._time, made._free = (
+            self._numbers.copy(), self._time.copy(), self._free.copy(),
+        )  # fmt: skip
+        return made
 
     @property
     def slots(self) -> Slots:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from fuzzytrack.plugins import Registry
 from fuzzytrack.scan.part import Part
 from fuzzytrack.scan.setting import Setting
+from fuzzytrack.scan.update.companion import Companion
 
 __all__ = ["Update", "UpdateKernels", "updates"]
 
@@ -42,6 +43,10 @@ class UpdateKernels(NamedTuple):
 
 class Update(Part):
     """Predicts tracks, and corrects them by their plots."""
+
+    def companion(self, at: int) -> Companion | None:
+        """What a session keeps for it beside the array of tracks, if anything."""
+        return None
 
     @abstractmethod
     def kernels(self, setting: Setting, at: int) -> UpdateKernels:
