@@ -12,7 +12,9 @@ both the gains of the filter and the size of the gate; the tracker beats a Kalma
 it, and the gate factor is the standard deviation of a prediction. Its table does not follow from
 them: F is infinite at N = 1, not 3, and 0.37 at N = 30, not 0.3. The table of errors cannot be
 reproduced: noise, trajectories, gains and units are missing. With 30 steps of quality the gains
-fall to α = 0.12, and a vessel that turns leaves its gate.
+fall to α = 0.12, and a vessel that turns leaves its gate. The experiment counts this, with 200
+vessels around a radar: of vessels that turn by up to 1 °/s, each loses its track four to five times
+in 14 minutes, and 0.2 times with the safe gate and a cap of 10. The 32 sectors save 15 of 16 pairs.
 
 **How it is read.** ``QualityGains()`` stops at N = 10, which keeps vessels that turn;
 ``QualityGains.as_published()`` goes to 30. A miss lowers it by 3; the paper has only "larger" than

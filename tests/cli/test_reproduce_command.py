@@ -6,6 +6,13 @@ import re
 import pytest
 
 from fuzzytrack.papers import zhang_jiang
+from fuzzytrack.papers.zhang_jiang import experiment
+
+
+@pytest.fixture(autouse=True)
+def without_experiment(monkeypatch):
+    """The experiment of Zhang & Jiang takes a minute, and is tested by itself."""
+    monkeypatch.setattr(experiment, "experiment_rows", lambda *given: [])
 
 
 def test_a_table_of_published_and_own_numbers(run):

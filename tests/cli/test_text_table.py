@@ -10,6 +10,7 @@ from rich.cells import cell_len
 from fuzzytrack.cli import demo as demonstration
 from fuzzytrack.cli import output
 from fuzzytrack.cli.text_table import table_lines, wrapped
+from fuzzytrack.papers.zhang_jiang import experiment
 
 HEADS = ["RMSE (m)", "predicted", "filtered", "vs first"]
 ROWS = [
@@ -127,6 +128,12 @@ COMMANDS = {
     "reproduce": ("reproduce", "zhang-jiang"),
     "trackers": ("trackers",),
 }
+
+
+@pytest.fixture(autouse=True)
+def without_experiment(monkeypatch):
+    """The experiment of Zhang & Jiang takes a minute, and is tested by itself."""
+    monkeypatch.setattr(experiment, "experiment_rows", lambda *given: [])
 
 
 @pytest.mark.parametrize("name", COMMANDS)

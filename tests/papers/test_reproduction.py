@@ -7,6 +7,7 @@ import pytest
 from fuzzytrack.papers import PAPERS, Reproduction, Row, reproduce
 from fuzzytrack.papers.catalog import reproduce_all
 from fuzzytrack.papers.reproduction import row
+from fuzzytrack.papers.zhang_jiang.vessels import Traffic
 
 
 @pytest.mark.parametrize(
@@ -71,10 +72,12 @@ def test_every_paper_has_its_module(name):
 
 
 @pytest.mark.parametrize("paper", PAPERS)
-def test_every_paper_runs_and_draws(paper):
+def test_every_paper_runs_and_draws(paper, monkeypatch):
     """With two runs, and traced; the numbers are tested for each paper by itself."""
     from matplotlib import pyplot as plt
 
+    few = Traffic(vessels=10, scans=30, clutter=5)
+    monkeypatch.setattr("fuzzytrack.papers.zhang_jiang.reproduction.TRAFFIC", few)
     shares = []
     found = reproduce(paper, 2, progress=shares.append)
     assert found.rows

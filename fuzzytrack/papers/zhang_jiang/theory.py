@@ -1,4 +1,4 @@
-"""Zhang & Jiang: gains and gates of vessels from the quality factor of their tracks."""
+"""Gains and gates from the quality factor of a track, as formulas."""
 
 from __future__ import annotations
 
@@ -11,17 +11,13 @@ from numpy.typing import ArrayLike
 from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import within
 from fuzzytrack.gains.design import quality
-from fuzzytrack.papers.reproduction import Reproduction, Row, row
-from fuzzytrack.tasks import Progress
+from fuzzytrack.papers.reproduction import Row, row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["RUNS", "gate_factor", "reproduce"]
+__all__ = ["gate_factor", "gates_picture", "theory_rows"]
 
-
-# Nothing here is random.
-RUNS = 1
 
 QUALITIES = (1, 2, 3, 5, 8, 10, 12, 15, 20, 30, 46, 100)
 
@@ -55,24 +51,9 @@ def gate_factor(n: ArrayLike) -> Array:
         return np.asarray(np.sqrt(2 * (2 * number + 1) / (number * (number - 1))))
 
 
-def reproduce(runs: int, seed: int, progress: Progress) -> Reproduction:
-    """Rebuild the tables of gains and gates; see `fuzzytrack.papers.reproduce`."""
-    rows = (*_gain_rows(), *_gate_rows(), *_lag_rows())
-    progress(1.0)
-    return Reproduction(
-        paper="zhang-jiang",
-        title="Zhang & Jiang: improved α-β filter for vessel traffic services",
-        rows=rows,
-        notes=(
-            "Table 1 cannot be reproduced: noise, trajectory, gains, process noise, run length and "
-            "units are not given.",
-            "The gate has no room for the error of the plot itself; it works because the size of a "
-            "plot is large against its noise.",
-            "With 30 steps of quality the lag behind a vessel that turns outgrows its gate, from N "
-            "of about 12 on, and the track is lost; QualityGains stops at 10 by default.",
-        ),
-        pictures={"gains-and-gates": _picture},
-    )
+def theory_rows() -> list[Row]:
+    """Gains, gate factors, and lags in a turn."""
+    return [*_gain_rows(), *_gate_rows(), *_lag_rows()]
 
 
 def _gain_rows() -> list[Row]:
@@ -109,7 +90,8 @@ def _lag_rows() -> list[Row]:
     ]
 
 
-def _picture() -> Figure:
+def gates_picture() -> Figure:
+    """Gains and gate factor over the quality."""
     from fuzzytrack.plotting.curves import plot_curves
 
     n = np.arange(2, 61)
