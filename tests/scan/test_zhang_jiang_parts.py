@@ -61,9 +61,9 @@ def test_a_plot_is_taken_up_to_the_end_of_the_gate(tracker, half):
 
 def test_a_miss_lowers_the_quality_by_three_and_the_first_plots_are_forgotten():
     plots = [(4000.0 + 30.0 * k, 0.0) for k in range(9)]
-    widened = run(published(), [*plots, None, (4300.0 + 1.05 * (15 + 50), 0.0)])
+    widened = run(published(), [*plots, None, (4300.0 + 0.9 * (15 + 50), 0.0)])
     assert widened.since_last[0] == 0.0
-    kept = run(published(), [*plots, (4270.0 + 1.05 * (15 + 50), 0.0)])
+    kept = run(published(), [*plots, (4270.0 + 0.9 * (15 + 50), 0.0)])
     assert kept.since_last[0] > 0.0
 
 
