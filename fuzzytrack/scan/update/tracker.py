@@ -75,9 +75,11 @@ class TrackerUpdate(Update):
                 vx, vy = tracks[i, ahead + 3], tracks[i, ahead + 4]
                 more = time - tracks[i, ahead]
                 x, y = tracks[i, ahead + 1] + more * vx, tracks[i, ahead + 2] + more * vy
-                known = tracks[i, ahead + 5] > 0.0 and tracks[i, ahead + 6] > 0.0
-                if known:
-                    p11, p22 = tracks[i, ahead + 5], tracks[i, ahead + 6]
+                if tracks[i, ahead + 5] > 0.0 and tracks[i, ahead + 6] > 0.0:
+                    # What the tracker knows, which grows in time as the covariance does.
+                    there, _, _ = covariance(tracks, i, tracks[i, ahead] - tracks[i, TIME])
+                    share = p11 / there
+                    p11, p22 = share * tracks[i, ahead + 5], share * tracks[i, ahead + 6]
             return x, y, vx, vy, p11, 0.0, p22
 
         def velocity_variance(tracks: Any, i: int, dt: float) -> tuple[float, float]:
@@ -100,7 +102,8 @@ class TrackerUpdate(Update):
             tracks[i, VX], tracks[i, VY] = tracks[i, after + 2], tracks[i, after + 3]
             kept = 1.0 - alpha
             tracks[i, P11] = kept * kept * p11 + alpha * alpha * r
-            tracks[i, P12] = kept * (p12 - g * p11) + alpha * g * r
+            # Not negative, so that the gate never shrinks while a track is not seen.
+            tracks[i, P12] = max(kept * (p12 - g * p11) + alpha * g * r, 0.0)
             tracks[i, P22] = p22 - 2.0 * g * p12 + g * g * (p11 + r)
             # What was predicted is of no use after the plot.
             tracks[i, ahead] = -math.inf
