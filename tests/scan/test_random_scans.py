@@ -19,3 +19,9 @@ def test_fuzzed_scans_are_tracked_or_refused(monkeypatch):
     # A fuzzer whose scans all fail, or all pass, tests nothing.
     assert min(report.taken, report.refused) > 30
     assert report.scans == report.taken + report.refused
+
+
+@pytest.mark.untraced
+def test_a_session_that_is_resumed_chooses_the_same_plots_of_a_crowd():
+    """Recording 40 has 297 plots at one spot, more than a track looks at."""
+    assert fuzz_scans.run((1, 40, 1, 2000)).failures == []

@@ -30,7 +30,8 @@ class CandidatesKernels(NamedTuple):
         ``near(x, y, reach, plots, count, clock, integers, numbers, found) -> n``: writes the rows
         of plots, in the new order, of which some may be within `reach` (m) of a place to `found`,
         each once, and returns how many. None that is within reach may be missing, but where the
-        part says so.
+        part says so. ``found[0]`` comes with the row of the track: a part that may not look at all
+        plots can choose by it, and chooses the same when it is asked again.
     """
 
     arrange: Callable[[Any, int, Any, Any, Any, Any], None]

@@ -13,8 +13,8 @@ from fuzzytrack.scan.setting import Setting
 
 __all__ = ["GridCandidates"]
 
-# Whole numbers before the table: columns and rows less 1, both powers of 2, and columns; calls.
-_ACROSS, _UP, _COLUMNS, _CALLS, _HEAD = 0, 1, 2, 3, 4
+# Whole numbers before the table: columns and rows less 1, both powers of 2, and columns.
+_ACROSS, _UP, _COLUMNS, _HEAD = 0, 1, 2, 3
 #: Smallest table; cells that a track looks into at most; plots it looks at, in a cell and in all.
 _LEAST, _MOST_CELLS, _MOST_IN_CELL, _MOST = 64, 4096, 64, 4096
 #: Plots that the cell of a plot holds on average, from which cells are halved; how often.
@@ -92,7 +92,6 @@ class GridCandidates(Candidates):
         def arrange(
             plots: Any, count: int, clock: Any, order: Any, integers: Any, numbers: Any
         ) -> None:
-            integers[_CALLS] = 0
             if count == 0:
                 return
             size, columns = _LEAST, 8
@@ -128,10 +127,10 @@ class GridCandidates(Candidates):
                 integers[_HEAD + k] = integers[_HEAD + k - 1]
             integers[_HEAD] = 0
 
-        def some(count: int, integers: Any, found: Any) -> int:
+        def some(count: int, track: int, found: Any) -> int:
             """As many of all plots as a track may look at, others for each track."""
             n = count if count < _MOST else _MOST
-            begin = (integers[_CALLS] * 61) % count
+            begin = (track * 61) % count
             for k in range(n):
                 row = begin + k
                 found[k] = row if row < count else row - count
@@ -143,14 +142,13 @@ class GridCandidates(Candidates):
         ) -> int:  # fmt: skip
             if count == 0:
                 return 0
-            integers[_CALLS] += 1
-            scale = numbers[0]
+            scale, track = numbers[0], found[0]
             width = 2.0 * reach * scale + 2.0
             columns, rows = integers[_COLUMNS], integers[_UP] + 1
             # No cell is looked into twice, and no more cells than there are plots.
             few = width < columns and width < rows and width * width < count + 32.0
             if not (few and width * width < _MOST_CELLS):
-                return some(count, integers, found)
+                return some(count, track, found)
             left, right = math.floor((x - reach) * scale), math.floor((x + reach) * scale)
             low, high = math.floor((y - reach) * scale), math.floor((y + reach) * scale)
             n = 0
@@ -160,7 +158,7 @@ class GridCandidates(Candidates):
                     k = start + (across & integers[_ACROSS])
                     begin, end = integers[k], integers[k + 1]
                     if end - begin > _MOST_IN_CELL:
-                        begin += (integers[_CALLS] * 61) % (end - begin - _MOST_IN_CELL + 1)
+                        begin += (track * 61) % (end - begin - _MOST_IN_CELL + 1)
                         end = begin + _MOST_IN_CELL
                     for row in range(begin, min(end, begin + _MOST - n)):
                         found[n] = row

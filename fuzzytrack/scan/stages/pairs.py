@@ -105,6 +105,7 @@ def pairs_stage(
                 farthest = reach(tracks, i, x, y, clock, noisy)
             if own_times:
                 farthest += span * math.sqrt(vx * vx + vy * vy)
+            found[0] = i
             n = near(x, y, farthest, plots, count, clock, integers, numbers, found)
             for k in range(n):
                 j = found[k]
