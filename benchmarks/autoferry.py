@@ -39,9 +39,9 @@ PERIOD = 1.678
 #: Trackers that take the place of that of `default`.
 TRACKERS = {
     "fixed": "fixed:alpha=.5:beta=.2",
-    "maneuver": "maneuver",
-    "Kalman CV": "kalman-cv:sigma_v=.2",
-    "IMM": "imm",
+    "maneuver": "maneuver:level=0.4",
+    "Kalman CV": "kalman-cv:sigma_v=.117",
+    "IMM": "imm:quiet_sigma=0.05:maneuver_sigma=0.4:maneuver=cv",
 }
 #: What Stone Soup is told: the best of a random search of ten minutes on these same scenarios.
 PEER_SETTINGS = {
