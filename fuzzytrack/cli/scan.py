@@ -104,8 +104,8 @@ def scan(
     own: Annotated[
         str | None,
         typer.Option(
-            metavar="COL,COL",
-            help="Columns of the position of a moving radar, in the frame of the plots.",
+            metavar="COL,COL|X,Y",
+            help="Position of the radar in the frame of the plots: columns, or numbers, m.",
             rich_help_panel=_SCANS,
         ),
     ] = None,

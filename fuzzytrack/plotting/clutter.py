@@ -167,4 +167,5 @@ def _draw_scans(ax: Axes, plane: GroundPlane, scans: Sequence[Scan], recent: int
         ax.plot(*plane.shown(plots), "o", label=label, markersize=3.0, zorder=2, **look)
     ship = np.asarray(scans[-1].own, np.float64)[None]
     style = {**STYLES["sensor"], "markeredgecolor": "white", "markeredgewidth": 0.8}
-    ax.plot(*plane.shown(ship), label="own ship", **style)
+    if np.isfinite(ship).all():
+        ax.plot(*plane.shown(ship), label="own ship", **style)

@@ -86,7 +86,7 @@ def plot_gates(
     picture.draw_plots(plots)
     picture.draw_gates(plots)
     ship = np.asarray(scan.own, np.float64)[None]
-    if extent is None or _inside(ship, extent)[0]:
+    if np.isfinite(ship).all() and (extent is None or _inside(ship, extent)[0]):
         panel.plot(*plane.shown(ship), label="own ship", **STYLES["sensor"])
     plane.finish(panel, limits=None if extent is None else np.array(extent, np.float64).T)
     picture.explain(plots)

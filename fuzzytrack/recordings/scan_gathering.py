@@ -14,7 +14,7 @@ from fuzzytrack.recordings.scan_cut import Cutter, ScanCut
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_list import ScanList
 from fuzzytrack.recordings.scan_rows import ScanRows
-from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scan import UNKNOWN_PLACE, Scan
 
 __all__ = ["GatheringRules", "ScanGathering"]
 
@@ -23,7 +23,6 @@ __all__ = ["GatheringRules", "ScanGathering"]
 _MOST_EMPTY = 100
 # So many scans back a word must not come again.
 _REMEMBERED = 8
-_ORIGIN = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -42,6 +41,8 @@ class GatheringRules:
         Whether plots are relative to the positions of the list of scans.
     drop_late : bool
         Whether scans that are not later than the one before are left out; else they are an error.
+    radar : tuple of float
+        Position of the radar before one is found in the rows or in the list of scans (m).
     """
 
     cut: ScanCut
@@ -49,6 +50,7 @@ class GatheringRules:
     scan_column: str = ""
     moved: bool = False
     drop_late: bool = False
+    radar: tuple[float, float] = UNKNOWN_PLACE
 
 
 class ScanGathering:
@@ -76,7 +78,7 @@ class ScanGathering:
         self._cutter = Cutter(rules.cut)
         self._open: list[ScanRows] = []
         self._time = math.nan
-        self._own = _ORIGIN
+        self._own = rules.radar
         self._recent: list[str] = []
         words = scans.scans.get(group, ()) if scans is not None else ()
         self._place = {word: place for place, word in enumerate(words)}

@@ -18,7 +18,7 @@ from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.plot_files import ROWS, PlotFiles, opened
 from fuzzytrack.io.readers import reader_of
 from fuzzytrack.io.reading import Reading
-from fuzzytrack.io.table import no_rows
+from fuzzytrack.io.table import is_number, no_rows
 from fuzzytrack.recordings.preparation import inputs_of
 from fuzzytrack.recordings.scan_cut import ScanCut
 from fuzzytrack.recordings.scan_findings import ScanFindings
@@ -28,7 +28,7 @@ from fuzzytrack.recordings.scan_order import CountedOn, RowOrder
 from fuzzytrack.recordings.scan_rhythm import antenna_of, recognize_scans
 from fuzzytrack.recordings.scan_rows import RowColumns, ScanRows, read_rows
 from fuzzytrack.reprs import summary
-from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scan import UNKNOWN_PLACE, Scan
 from fuzzytrack.tasks import Progress
 
 __all__ = ["ScanPlots", "scans_of"]
@@ -63,6 +63,8 @@ class ScanPlots:
         How late a plot may come (s); None if none may.
     sectors : int or None
         Sectors of a turn, if plots are tracked sector by sector behind the beam.
+    radar : tuple of float
+        Position of the radar where no column has it (m).
     findings : ScanFindings
         Counts and notes; it grows while scans are read.
     """
@@ -74,6 +76,7 @@ class ScanPlots:
     list: ScanList | None = None
     lateness: float | None = None
     sectors: int | None = None
+    radar: tuple[float, float] = UNKNOWN_PLACE
     findings: ScanFindings = field(default_factory=ScanFindings, compare=False)
 
     def __repr__(self) -> str:
@@ -111,8 +114,10 @@ class ScanPlots:
             each other.
         own : (str, str), optional
             Columns of the position of a moving radar, in the frame of the plots; in the list of
-            scans if it has them, otherwise in the recording. Plots that are relative to the radar
-            have the option `own_ship` of the reading instead.
+            scans if it has them, otherwise in the recording; or two numbers, the position of a
+            radar that does not move (m). Plots that are relative to the radar have the option
+            `own_ship` of the reading instead. Without it, the noise of plots given by x and y is
+            taken to be the same everywhere.
         scans : str or path, optional
             Table of all scans, see `ScanList.read`; needs a column of scans.
         lateness : float, optional
@@ -136,16 +141,23 @@ class ScanPlots:
         inputs = (plots,) if hasattr(plots, "tables") else inputs_of(plots)
         files = PlotFiles.of(inputs, _without_identities(inputs[0], reading), identified=False)
         _check_plots(files.decoder)
+        radar = _radar(files, own, sectors)
+        still = _is_place(own)
+        own = None if still else own
         columns = _columns(
             files, scan, group, own, searched=(period or sectors) is None, listed=scans
         )
+        if still:
+            columns = replace(columns, own=())
         listed = None
         if scans is not None:
             if not columns.scan:
                 raise ValueError("scans: needs the column of the scans; name it with `scan`")
             listed = ScanList.read(scans, files.decoder, columns, own)
             columns = replace(columns, own=() if listed.has_own else columns.own)
-        made = cls(files, columns, ScanCut(), "", listed, lateness, sectors)
+            if still and listed.has_own:
+                raise ValueError(f"own: {listed.file} has the positions of the radar; remove it")
+        made = cls(files, columns, ScanCut(), "", listed, lateness, sectors, radar)
         _check_own(made, own)
         cut, said = made._cut(period)
         made.findings.note(_notes(made))
@@ -254,6 +266,7 @@ class ScanPlots:
             self.columns.scan,
             moved,
             drop_late or self.lateness is not None,
+            self.radar,
         )
         return ScanGathering(rules, self.findings, self.list, group)
 
@@ -421,6 +434,25 @@ def _columns(
     return columns
 
 
+def _is_place(own: tuple[str, ...] | None) -> bool:
+    """Whether two numbers are given, not names of columns."""
+    return own is not None and len(own) == 2 and all(is_number(each) for each in own)
+
+
+def _radar(
+    files: PlotFiles, own: tuple[str, ...] | None, sectors: int | None
+) -> tuple[float, float]:
+    """Position of the radar in the frame of the plots, as far as it is not in columns."""
+    if own is not None and _is_place(own):
+        if _is_relative(files.decoder):
+            raise ValueError("own: plots in range and azimuth are relative to the radar; remove it")
+        return float(own[0]), float(own[1])
+    relative = files.decoder.columns.position == "polar"
+    # The frame of places on earth is that of the site; a turning antenna needs an origin.
+    at_origin = relative or files.reading.description.site is not None or sectors is not None
+    return (0.0, 0.0) if at_origin else UNKNOWN_PLACE
+
+
 def _check_own(plots: ScanPlots, said: tuple[str, ...] | None) -> None:
     """Check that the position of the radar can be used."""
     decoder, own, listed = plots.files.decoder, plots.columns.own, plots.list
@@ -452,8 +484,11 @@ def _notes(plots: ScanPlots) -> Iterator[str]:
         yield f"{columns.axes[2]}: tracks are in the plane of the other two coordinates"
     if plots.columns.own:
         yield f"position of the radar from columns {', '.join(plots.columns.own)}"
-    if plots.list is not None and plots.list.has_own:
+    listed = plots.list is not None and plots.list.has_own
+    if plots.list is not None and listed:
         yield f"position of the radar from {plots.list.file}"
+    elif not plots.columns.own and math.isnan(plots.radar[0]):
+        yield "position of the radar not known, so its bearing noise is not used; `own` gives it"
 
 
 # -------------------------------------------------------------------- pieces

@@ -1,7 +1,7 @@
 """Track-while-scan: from the plots of a radar, without identities, to tracks."""
 
 from fuzzytrack.scan.part import Parameter, Part, Word, declared, parameter, parameters, word
-from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scan import UNKNOWN_PLACE, Scan
 from fuzzytrack.scan.scan_result import ScanResult
 from fuzzytrack.scan.scan_session import ScanSession
 from fuzzytrack.scan.scan_tracker import ScanTracker
@@ -12,6 +12,7 @@ from fuzzytrack.scan.track_reports import KINDS, STATUSES, TrackReports
 __all__ = [
     "KINDS",
     "STATUSES",
+    "UNKNOWN_PLACE",
     "Parameter",
     "Part",
     "Scan",

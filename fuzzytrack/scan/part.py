@@ -106,6 +106,8 @@ class Part:
 
     #: Where it comes from: a paper with its equation, or what was measured.
     source: ClassVar[str] = ""
+    #: Whether it needs the position of the radar.
+    needs_own: ClassVar[bool] = False
     #: Whether its kernels are plain Python that cannot be compiled; then all stages of a scan that
     #: call them run in plain Python, too.
     plain: ClassVar[bool] = False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,10 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
 
-__all__ = ["Scan"]
+__all__ = ["UNKNOWN_PLACE", "Scan"]
+
+#: Position of a radar that is not known.
+UNKNOWN_PLACE = (math.nan, math.nan)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +33,9 @@ class Scan:
     times : ndarray, shape (n,), or None
         Times of the plots (s), none later than `time`; None if all were made at `time`.
     own : tuple of float
-        Position of the radar in the same frame (m).
+        Position of the radar in the same frame (m); `UNKNOWN_PLACE` if it is not known: then the
+        noise of plots without covariances is the same everywhere, and parts of a scan tracker that
+        need ranges or bearings refuse the scan.
     rows : ndarray of int, shape (n,), or None
         Row of each plot in its recording; None numbers the plots of this scan from 0.
     """

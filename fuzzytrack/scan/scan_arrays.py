@@ -30,7 +30,11 @@ _NO_STARTS, _NO_ROWS = np.empty(0, np.bool_), np.empty(0, np.int64)
 
 
 def scan_arrays(
-    scan: Scan, last: float, begins: bool, may_start: ArrayLike | None = None
+    scan: Scan,
+    last: float,
+    begins: bool,
+    may_start: ArrayLike | None = None,
+    needing_own: tuple[str, ...] = (),
 ) -> ScanArrays:
     """Arrays of a scan, of which everything is checked but single plots.
 
@@ -43,17 +47,26 @@ def scan_arrays(
         Whether the scan must be later than that, not only not earlier.
     may_start : array_like of bool, optional
         Which plots may start a track.
+    needing_own : tuple of str
+        Roles whose part needs the position of the radar.
 
     Raises
     ------
     DataError
-        If the time does not follow, or a shape does not fit.
+        If the time does not follow, a shape does not fit, or the position of the radar is needed
+        and not known.
     """
     time = scan.time
     if not ((time > last if begins else time >= last) and -LARGEST <= time <= LARGEST):
         raise DataError(f"time: {time!r} s does not follow {last!r} s; scans need times that grow")
     own_x, own_y = scan.own
-    if not (-LARGEST <= own_x <= LARGEST and -LARGEST <= own_y <= LARGEST):
+    if own_x != own_x and own_y != own_y:
+        if needing_own:
+            raise DataError(
+                f"own: the position of the radar is not known, and {' and '.join(needing_own)} of "
+                "this configuration need it"
+            )
+    elif not (-LARGEST <= own_x <= LARGEST and -LARGEST <= own_y <= LARGEST):
         raise DataError(f"own: {scan.own!r} is no position in meters")
     positions: Any = np.ascontiguousarray(scan.positions, np.float64)
     n = len(positions)

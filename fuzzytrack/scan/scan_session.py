@@ -61,7 +61,7 @@ class ScanSession:
         self.tracker, self._plain = tracker, plain
         self._pass = scan_pass(tracker, plain)
         self._work = new_workspace(tracker)
-        self._companion = tracker.companion()
+        self._companion, self._needing_own = tracker.companion(), tracker.needing_own()
         self._work.clock[SCAN_TIME], self._work.clock[SCAN] = -np.inf, -1.0
 
     def __repr__(self) -> str:
@@ -172,7 +172,7 @@ class ScanSession:
         """Run all stages of a scan."""
         clock, last = self._work.clock, self.time
         begins = new_scan or clock[SCAN] < 0.0
-        arrays = scan_arrays(scan, last, begins, may_start)
+        arrays = scan_arrays(scan, last, begins, may_start, self._needing_own)
         n = len(arrays.positions)
         self._tidy()
         rows = int(self._work.counts[ROWS])

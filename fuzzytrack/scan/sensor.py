@@ -19,7 +19,8 @@ class Sensor(Part):
     """A radar: how exact its plots are, how often it sees a target, how long a scan takes.
 
     With u the unit vector from the radar to a plot at range r, and w perpendicular to it, the
-    covariance of a plot is ``R = range_noise² uuᵀ + (bearing_noise r)² wwᵀ + extra_noise² I``.
+    covariance of a plot is ``R = range_noise² uuᵀ + (bearing_noise r)² wwᵀ + extra_noise² I``; it
+    is ``(range_noise² + extra_noise²) I`` where the position of the radar is not known.
     """
 
     source: ClassVar[str] = "measured on harbor radar, second tuning"
@@ -50,7 +51,8 @@ class Sensor(Part):
             dx = x - own_x
             dy = y - own_y
             square = dx * dx + dy * dy
-            if square == 0.0:
+            # At the radar, or NaN where its position is not known.
+            if not square > 0.0:
                 return along + extra, 0.0, along + extra
             # (along - bearing r²) uuᵀ + (bearing r² + extra) I, as uuᵀ + wwᵀ = I.
             across = bearing * square

@@ -38,8 +38,21 @@ def test_scans_by_a_column():
     assert [scan.rows.tolist() for scan in scans] == [[1, 2], [3], [4, 5]]
     np.testing.assert_array_equal(scans[2].positions, [[1.2, 5.2], [2.2, 6.2]])
     assert all(scan.times is None and scan.covariances is None for scan in scans)
-    assert all(scan.own == (0.0, 0.0) for scan in scans)
+    assert all(math.isnan(scan.own[0] + scan.own[1]) for scan in scans)
     assert (made.findings.scans, made.findings.plots, made.findings.empty) == (3, 5, 0)
+
+
+def test_the_place_of_a_radar_that_does_not_move_is_given_as_numbers():
+    _, found = read(THREE, scan="n", own=("-20", "3.5"))
+    assert [scan.own for _, scan in found] == [(-20.0, 3.5)] * 3
+
+
+def test_plots_in_range_and_azimuth_have_their_radar_at_the_origin():
+    data = plots_of(scan=[0, 1], t=[0.0, 1.0], r=[10.0, 11.0], az=[90.0, 91.0])
+    _, found = read(data, {"polar": ("r", "az")})
+    assert [scan.own for _, scan in found] == [(0.0, 0.0)] * 2
+    with pytest.raises(ValueError, match="own: plots in range and azimuth are relative"):
+        read(data, {"polar": ("r", "az")}, own=("1", "2"))
 
 
 def test_a_column_with_a_usual_name_is_found():
@@ -369,6 +382,6 @@ def test_a_scan_cell_may_not_be_empty():
 def test_identities_are_not_used():
     made, found = read({**THREE, "track_id": list("abcde")}, scan="n")
     assert len(found) == 3
-    assert made.findings.notes == ["column 'track_id': identities of plots are not used"]
+    assert made.findings.notes[:1] == ["column 'track_id': identities of plots are not used"]
     made, _ = read({**THREE, "who": list("abcde")}, {"id": "who"}, scan="n")
-    assert made.findings.notes == ["column 'who': identities of plots are not used"]
+    assert made.findings.notes[:1] == ["column 'who': identities of plots are not used"]

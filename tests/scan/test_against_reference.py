@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from reference_machine import Numbers, ReferenceMachine
 from scenes import scene
 
-from fuzzytrack.scan import KINDS, STATUSES, ScanTracker
+from fuzzytrack.scan import KINDS, STATUSES, UNKNOWN_PLACE, ScanTracker
 from fuzzytrack.scan.association import OptimalAssociation
 from fuzzytrack.scan.clutter import AdaptiveMap
 from fuzzytrack.scan.confirmation import Evidence
@@ -74,6 +74,12 @@ def test_plots_with_times_and_covariances_of_their_own(seed):
     assert compare(scene(100 + seed, own_times=True)) > 0
     assert compare(scene(200 + seed, covariances=True)) > 0
     assert compare(scene(300 + seed, own_times=True, covariances=True)) > 0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_radar_whose_place_is_not_known(seed):
+    scans = [dataclasses.replace(each, own=UNKNOWN_PLACE) for each in scene(400 + seed)]
+    assert compare(scans) > 0
 
 
 @settings(max_examples=25, deadline=None)

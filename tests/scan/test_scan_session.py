@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.scan import Scan, ScanSession, ScanTracker, TrackReports
+from fuzzytrack.scan import UNKNOWN_PLACE, Scan, ScanSession, ScanTracker, TrackReports
+from fuzzytrack.scan.candidates import SectorCandidates
+from fuzzytrack.scan.gate import BoxGate
 
 COLUMNS = TrackReports.__dataclass_fields__
 
@@ -35,6 +37,15 @@ def test_two_targets_become_two_tracks():
     assert missed.status.tolist() == [1, 2]
     assert missed.plot.tolist() == [0, -1]
     assert missed.since_last.tolist() == [0, pytest.approx(1.7)]
+
+
+def test_parts_that_need_the_place_of_the_radar_refuse_a_scan_without_it():
+    tracker = ScanTracker(gate=BoxGate(), candidates=SectorCandidates())
+    session = tracker.start()
+    session.step(Scan(0.0, np.ones((1, 2))))
+    with pytest.raises(DataError, match=r"own: .* not known, and candidates and gate of this"):
+        session.step(Scan(1.0, np.ones((1, 2)), own=UNKNOWN_PLACE))
+    assert session.scans == 1
 
 
 def test_plain_python_gives_the_same_bits():

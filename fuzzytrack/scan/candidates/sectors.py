@@ -27,6 +27,7 @@ class SectorCandidates(Candidates):
     The other way, ``spanned``, looks into all the sectors that the gate spans, and misses none.
     """
 
+    needs_own = True
     source: ClassVar[str] = "Zhang & Jiang, division of sectors"
 
     sectors: int = parameter(32, "number of sectors", "", least=2, most=4096, whole=True)

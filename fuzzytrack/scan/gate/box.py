@@ -39,6 +39,7 @@ class BoxGate(Gate):
     A track with one plot has no quality yet: ``speed·dt + 3σ + L/2``.
     """
 
+    needs_own = True
     source: ClassVar[str] = "Zhang & Jiang, gate calculation; safe form measured on simulations"
 
     form: str = word(

@@ -26,6 +26,9 @@ __all__ = ["HypothesisBank"]
 _STEADY, _LOOSE, _WANDER, _ARC, _MEAN_X, _MEAN_Y, _CLUTTER, _RATIO = range(8)
 _LAST_X, _LAST_Y, _LAST_OWN_X, _LAST_OWN_Y, _MEMORY = range(8, 13)
 _LOG_TAU = math.log(2.0 * math.pi)
+#: Log-likelihood of an arc where the position of the radar is not known; a number, so that sums of
+#: it are numbers.
+_NEVER = -1e300
 #: Log-density (plots/m² and scan) at which clutter says nothing of the kind.
 _NEUTRAL = math.log(1e-5)
 
@@ -44,7 +47,8 @@ class HypothesisBank(Kind):
     steady echo, a loose one, an echo that wanders, and one on an arc around the radar. With
     ``B = ln Σ exp(-E) + clutter_weight·(smoothed ln λ - ln 1e-5)`` and the hit ratio ρ, it is
     moving if ``B + miss_weight·(1 - ρ)`` falls below ``-moving``, and no longer if it exceeds
-    `withdrawn`. The evidence of motion is -B.
+    `withdrawn`. The evidence of motion is -B. Where the position of the radar is not known, there
+    is no hypothesis of an arc.
     """
 
     source: ClassVar[str] = "first study, step 10; second study, changes (c) and (d)"
@@ -106,6 +110,8 @@ class HypothesisBank(Kind):
             last_x = tracks[i, at + _LAST_X] - tracks[i, at + _LAST_OWN_X]
             last_y = tracks[i, at + _LAST_Y] - tracks[i, at + _LAST_OWN_Y]
             r, last = math.sqrt(x * x + y * y), math.sqrt(last_x * last_x + last_y * last_y)
+            if not (r >= 0.0 and last >= 0.0):
+                return _NEVER
             product = r * last
             turn = (last_x * y - last_y * x) / product if product > 0.0 else 0.0
             way = 0.5 * turn * (r + last)
