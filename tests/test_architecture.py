@@ -2,6 +2,7 @@
 
 import importlib
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,12 @@ def test_all_that_is_registered_is_exported(room):
     for plugin in getattr(module, room):
         if plugin.package == "fuzzytrack":
             assert plugin.factory.__name__ in module.__all__
+
+
+def test_no_two_modules_of_tests_have_one_name():
+    """Tests import their helpers by name alone: in one process, the first of that name is found."""
+    counts = Counter(path.name for path in Path(__file__).parent.rglob("*.py"))
+    assert {name for name, n in counts.items() if n > 1} <= {"conftest.py"}
 
 
 # -------------------------------------------------------------------- docs/architecture.md

@@ -6,21 +6,19 @@ import json
 import numpy as np
 import pytest
 
-NUMBERS = np.random.default_rng(11)
-
 
 @pytest.fixture
 def harbor(csv):
     """Two boats and some clutter, 25 scans; the tenth has no plot."""
-    lines = ["scan,t,x,y"]
+    random, lines = np.random.default_rng(11), ["scan,t,x,y"]
     for k in range(25):
         if k == 10:
             continue
         t = 1.7 * k
         boats = [(3 * t, 50), (-80, 4 * t)]
-        clutter = NUMBERS.uniform(-300, 300, (NUMBERS.poisson(2), 2)).tolist()
+        clutter = random.uniform(-300, 300, (random.poisson(2), 2)).tolist()
         for x, y in [*boats, *clutter]:
-            noise = NUMBERS.normal(0, 0.7, 2)
+            noise = random.normal(0, 0.7, 2)
             lines.append(f"{k},{t:.2f},{x + noise[0]:.3f},{y + noise[1]:.3f}")
     return csv("\n".join(lines) + "\n")
 

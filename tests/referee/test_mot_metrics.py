@@ -16,7 +16,7 @@ from fuzzytrack.scoring.hota import hota
 from fuzzytrack.scoring.idf1 import idf1
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "scoring"))
-from scenes import pairs, random_scene
+from scored_scenes import pairs, random_scene
 
 SEEDS = range(8)
 

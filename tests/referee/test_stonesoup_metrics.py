@@ -17,7 +17,7 @@ from fuzzytrack.scoring.ospa import SetAssignment, ospa
 from fuzzytrack.scoring.siap import nearest_objects, siap
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "scoring"))
-from scenes import pairs, random_scene, scene
+from scored_scenes import pairs, random_scene, scene
 
 with warnings.catch_warnings():
     # What it warns of while it is imported is its own affair.

@@ -72,6 +72,6 @@ BEYOND = {"numbers that do not fit", "a default that does not fit", "an unknown 
 BEYOND |= {"a key twice", "nothing", "no number", "an infinite number"}
 
 
-@pytest.mark.parametrize("mistake", MISTAKES.keys() - BEYOND)
+@pytest.mark.parametrize("mistake", sorted(MISTAKES.keys() - BEYOND))
 def test_what_is_refused_is_not_valid(mistake):
     assert not valid(MISTAKES[mistake][0])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import pairs, random_scene, scene
+from scored_scenes import pairs, random_scene, scene
 
 from fuzzytrack.scoring.clear_mot import clear_mot
 from fuzzytrack.scoring.correspondences import Correspondences

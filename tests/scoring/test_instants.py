@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import positions
+from scored_scenes import positions
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.scoring.clock_lag import fitted_lag

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes import one_instant, pairs, points, random_scene, scene, swapped
+from scored_scenes import one_instant, pairs, points, random_scene, scene, swapped
 
 from fuzzytrack.scoring.gospa import gospa
 from fuzzytrack.scoring.ospa import SetAssignment, ospa

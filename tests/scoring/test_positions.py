@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes import positions
+from scored_scenes import positions
 
 from fuzzytrack import scan
 from fuzzytrack.scoring.positions import KINDS, Positions

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import pairs, random_scene, scene
+from scored_scenes import pairs, random_scene, scene
 
 from fuzzytrack.scoring.correspondences import Correspondences
 from fuzzytrack.scoring.siap import nearest_objects, siap
