@@ -45,7 +45,7 @@ def targets_of(result, where):
 @pytest.mark.parametrize("sectors", [4, 8, 32])
 def test_tracks_are_those_of_whole_scans(sectors, clockwise):
     columns, who, where = turning_radar(3, clockwise=clockwise)
-    whole = track_scans(columns, period=2.5).result
+    whole = track_scans(columns, period=2.5, own=("0", "0")).result
     by_sector = track_scans(columns, sectors=sectors)
     parts = by_sector.result
     found = [targets_of(result, where) for result in (whole, parts)]
