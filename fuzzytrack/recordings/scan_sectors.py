@@ -1,7 +1,7 @@
 """Plots of a turning antenna, tracked sector by sector behind the beam.
 
 A turn has N sectors, counted on from turn to turn. When the beam has passed the end of sector
-q + 1, the tentative tracks in sector q are due, and the confirmed ones half a sector ahead of them:
+q + 1, the confirmed tracks in sector q are due, and the tentative ones half a sector behind them:
 they get the plots of the sectors q - 1 to q + 1 that no track has used. Then all tracks that could
 use a plot of sector q - 1 have been due, and a plot there that is left starts a track. So the
 report of a track comes at most two sectors after the beam has passed it, and a start one sector
@@ -31,8 +31,8 @@ __all__ = ["Beam", "SectorPass"]
 _ANGLE_GAIN, _RATE_GAIN = 0.1, 0.02
 # A longer silence is so many turns without a plot, and then a gap.
 _MOST_SILENT = 100
-# How much earlier a confirmed track is due than a tentative one, in sectors.
-_EARLIER = 0.5
+# How much later a tentative track is due than a confirmed one, in sectors.
+_LATER = 0.5
 _TENTATIVE = STATUSES.index("tentative")
 _FULL = 2 * math.pi
 
@@ -239,11 +239,11 @@ class SectorPass:
         ahead = (time - tracks.time)[:, None]
         offset = tracks.position + ahead * tracks.velocity - self._own
         share = np.arctan2(offset[:, 0], offset[:, 1]) / _FULL
-        # Confirmed tracks come half a sector earlier, so that no tentative one on the other side of
-        # a border takes their plots.
-        early = np.where(tracks.status == _TENTATIVE, 0.0, _EARLIER)
+        # Tentative tracks come half a sector later, so that none on the other side of a border takes
+        # the plot of a confirmed one.
+        late = np.where(tracks.status == _TENTATIVE, _LATER, 0.0)
         turned = (share if self._beam.clockwise else -share) * n
-        place = np.floor(turned - early).astype(np.int64)
+        place = np.floor(turned + late).astype(np.int64)
         behind = np.mod(sector - place, n)
         # A new track was made by a plot that is two sectors back.
         live = {id: self._done.get(id, sector - 2) for id in ids.tolist()}
