@@ -174,7 +174,7 @@ def _stages(tracker: ScanParts) -> tuple[Stages, Callable[..., float], tuple[boo
             tracker.sensor.detection,
         ),
         start_stage(update, quality, kind, initiation, confirmation, identity, clutter),
-        report_stage(update, quality, report),
+        report_stage(update, quality, kind, report),
     )  # fmt: skip
     plain = {role for role in tracker.roles() if getattr(tracker, role).plain}
     return stages, clutter.density, tuple(bool(plain & used) for used in _USED)
@@ -189,7 +189,7 @@ _USED: tuple[set[str], ...] = (
     {"association"},
     _LIFE,
     _LIFE,
-    {"update", "quality", "report"},
+    {"update", "quality", "kind", "report"},
 )
 
 

@@ -86,6 +86,8 @@ def kind_is_one_of_three(part: Kind, seed: int) -> None:
             kernels.miss(world.tracks, 0, world.clock)
         found, evidence = world.tracks[0, t.KIND], world.tracks[0, t.MOTION]
         expect(found in (UNDECIDED, MOVING, STATIC), f"KIND must be 0, 1 or 2, got {found}")
+        told = kernels.reported(world.tracks, 0)
+        expect(told in (UNDECIDED, MOVING, STATIC), f"reported must be 0, 1 or 2, got {told}")
         expect(not math.isnan(evidence), "MOTION must be a number")
 
 

@@ -71,6 +71,7 @@ class Numbers:
     tst: float = -0.25
     lcs: float = 11.1
     hstat: int = 13
+    rest: float = 3.0
     ff2: float = 0.996
     mdr: float = 8.0  # merged plots
     mdc: float = 6.0
@@ -495,6 +496,11 @@ class ReferenceMachine:
         )
         self.next_id += 1
         return track
+
+    def kind_reported(self, track):
+        """Moving, unless it has long been where the mean of its plots is."""
+        still = track.hits >= self.n.hstat and math.dist(track.p, track.mean) < self.n.rest
+        return STATIC if still and track.kind == MOVING else track.kind
 
     def reported(self, track):
         """Step 15."""

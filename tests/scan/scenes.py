@@ -16,8 +16,9 @@ def scene(seed, *, scans=30, ships=5, clutter=3.0, side=400.0, own_times=False, 
     begin, end = rng.integers(0, scans // 2, ships), rng.integers(scans // 2, scans + 10, ships)
     place = rng.uniform(0, side, (ships, 2))
     velocity = rng.normal(0, 3, (ships, 2))
-    # Two ships side by side, and something that jumps about a place, as a shore does.
+    # Two ships side by side, one at rest, and something that jumps about a place, as a shore does.
     place[1], velocity[1] = place[0] + rng.uniform(10, 25, 2), velocity[0]
+    velocity[2:3] = 0.0
     shore = rng.uniform(0, side, 2)
     found, time = [], 10.0
     for k in range(scans):

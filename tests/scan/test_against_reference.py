@@ -36,6 +36,7 @@ def compare(scans, numbers=NUMBERS, session=None):
         reports, live = session.step(scan), session.tracks()
         reported += len(shown)
         assert reports.track_id.tolist() == [track.id for track in shown]
+        assert reports.kind.tolist() == [machine.kind_reported(track) for track in shown]
         assert live.track_id.tolist() == [track.id for track in machine.tracks]
         for row, track in enumerate(machine.tracks):
             time = scan.time if track.plot < 0 else track.last.t
@@ -48,7 +49,7 @@ def compare(scans, numbers=NUMBERS, session=None):
             np.testing.assert_allclose(live.existence[row], existence, rtol=1e-6)
             assert live.time[row] == time
             assert live.plot[row] == track.plot
-            assert live.kind[row] == track.kind
+            assert live.kind[row] == machine.kind_reported(track)
             status = "tentative"
             if track.confirmed:
                 status = "confirmed" if track.misses == 0 else "coasting"
@@ -119,7 +120,7 @@ def with_numbers(n):
         quality=Existence(n.ps, n.lb, n.lmax),
         kind=HypothesisBank(
             n.sst, n.slo, n.srw, n.sar, n.sac, n.ff2, n.kap, n.tm, n.chilo, n.kr, n.lhr, n.tst,
-            n.lcs, n.hstat,
+            n.lcs, n.hstat, n.rest,
         ),
         initiation=OnePoint(n.sv0, n.vmax),
         confirmation=Evidence(n.lc, n.minhit, n.lc2, n.wb, n.le, n.ld, n.kt, n.k),

@@ -17,7 +17,7 @@ from fuzzytrack.scan.plot_columns import (
     PLOT_Y,
 )
 from fuzzytrack.scan.setting import Setting
-from fuzzytrack.scan.track_columns import HITS, KIND, MOTION, SCORE, TIME
+from fuzzytrack.scan.track_columns import HITS, KIND, MOTION, SCORE, TIME, X, Y
 
 __all__ = ["HypothesisBank"]
 
@@ -49,6 +49,10 @@ class HypothesisBank(Kind):
     moving if ``B + miss_weight·(1 - ρ)`` falls below ``-moving``, and no longer if it exceeds
     `withdrawn`. The evidence of motion is -B. Where the position of the radar is not known, there
     is no hypothesis of an arc.
+
+    An echo that is steadier than all four counts as moving by its likelihood, and is confirmed and
+    kept as such. It is reported as static from `static_hits` plots on while its position is within
+    `rest` of their mean.
     """
 
     source: ClassVar[str] = "first study, step 10; second study, changes (c) and (d)"
@@ -70,6 +74,8 @@ class HypothesisBank(Kind):
     static_score: float = parameter(11.1, "score above which a track can be static", "nats")
     static_hits: int = parameter(13, "plots from which a track can be static", "", least=2,
                                  whole=True)  # fmt: skip
+    rest: float = parameter(3.0, "distance from the mean of its plots within which a moving track "
+                            "is reported as static", "m", least=0)  # fmt: skip
 
     @property
     def memory(self) -> int:
@@ -85,7 +91,7 @@ class HypothesisBank(Kind):
         along, around = self.arc_range * self.arc_range, self.arc_way * self.arc_way / period
         fade, clutter_weight = self.fade, self.clutter_weight
         moving, withdrawn = -self.moving, self.withdrawn
-        miss_weight, ratio_rate = self.miss_weight, self.ratio_rate
+        miss_weight, ratio_rate, rest = self.miss_weight, self.ratio_rate, self.rest
         margin, static_score, static_hits = (
             self.static_margin, self.static_score, float(self.static_hits),
         )  # fmt: skip
@@ -145,6 +151,13 @@ class HypothesisBank(Kind):
             ):
                 tracks[i, KIND] = STATIC
 
+        def reported(tracks: Any, i: int) -> float:
+            dx, dy = tracks[i, X] - tracks[i, at + _MEAN_X], tracks[i, Y] - tracks[i, at + _MEAN_Y]
+            rests = tracks[i, HITS] >= static_hits and dx * dx + dy * dy < rest * rest
+            if rests and tracks[i, KIND] == MOVING:
+                return STATIC
+            return tracks[i, KIND]  # type: ignore[no-any-return]
+
         def hit(tracks: Any, i: int, plots: Any, j: int, clock: Any) -> None:
             dt = plots[j, PLOT_TIME] - tracks[i, TIME]
             seen = min(tracks[i, HITS] - 1.0, 20.0)
@@ -177,4 +190,4 @@ class HypothesisBank(Kind):
             tracks[i, at + _RATIO] -= ratio_rate * tracks[i, at + _RATIO]
             withdraw(tracks, i)
 
-        return KindKernels(start, hit, miss)
+        return KindKernels(start, hit, miss, reported)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fuzzytrack.scan.clock import HAS_DUE, REPORTS, ROWS, SCAN, SCAN_TIME, SORTED, TENTATIVE_TOO
+from fuzzytrack.scan.kind.base import KindKernels
 from fuzzytrack.scan.quality.base import QualityKernels
 from fuzzytrack.scan.report.base import ReportKernels
 from fuzzytrack.scan.report_columns import (
@@ -24,7 +25,7 @@ from fuzzytrack.scan.report_columns import (
 )
 from fuzzytrack.scan.stages.plots import DONE
 from fuzzytrack.scan.stages.tracks import CONFIRMED
-from fuzzytrack.scan.track_columns import ID, KIND, MISSES, PLOT, STATUS, TIME
+from fuzzytrack.scan.track_columns import ID, MISSES, PLOT, STATUS, TIME
 from fuzzytrack.scan.update.base import UpdateKernels
 
 __all__ = ["report_stage"]
@@ -34,11 +35,11 @@ _FEW = 64
 
 
 def report_stage(
-    update: UpdateKernels, quality: QualityKernels, report: ReportKernels
+    update: UpdateKernels, quality: QualityKernels, kind: KindKernels, report: ReportKernels
 ) -> Callable[..., int]:
     """Stage that writes what is reported."""
     predict, velocity_variance = update.predict, update.velocity_variance
-    existence, shown = quality.existence, report.shown
+    existence, reported_kind, shown = quality.existence, kind.reported, report.shown
 
     def write(tracks: Any, i: int, work: Any, n: int, now: float) -> None:
         numbers, whole, words = work.report, work.report_whole, work.report_words
@@ -60,7 +61,7 @@ def report_stage(
         status = 0
         if tracks[i, STATUS] == CONFIRMED:
             status = 2 if coasts else 1
-        words[n, REPORT_STATUS], words[n, REPORT_KIND] = status, int(tracks[i, KIND])
+        words[n, REPORT_STATUS], words[n, REPORT_KIND] = status, int(reported_kind(tracks, i))
 
     def report_stage(work: Any) -> int:
         tracks, clock, counts, due = work.tracks, work.clock, work.counts, work.due
