@@ -3,8 +3,8 @@
     python -m benchmarks.aircraft FOLDER [-o aircraft.json]
 
 FOLDER holds ``radar_plots_sim.csv``, plots with range and azimuth, simulated on a recorded flight,
-and ``truth_1s.csv`` with the flight; they are not part of this package. The scan tracker is that of
-``benchmarks/scanners/aircraft.yaml``: ``default`` with the numbers of this radar, without a kind.
+and ``truth_1s.csv`` with the flight; they are not part of this package. The scan tracker is the
+shipped configuration ``air``.
 The aircraft is tracked where a track is within 500 m; a track is false where none is.
 """
 
@@ -22,12 +22,11 @@ from benchmarks.peers import Array
 from benchmarks.ranking import lines, rounded
 from benchmarks.scan_judge import Judgment, Rule, judged
 from benchmarks.scan_peers import Setting, followed, shipped
-from benchmarks.work import ROOT
 from fuzzytrack.cli.output import write_json
 from fuzzytrack.json_types import plain
 from fuzzytrack.scan.scan import Scan
 
-SCANNER = ROOT / "benchmarks" / "scanners" / "aircraft.yaml"
+SCANNER = "air"
 PERIOD = 4.0
 RULE = Rule(cutoff=500.0, reach=500.0, fast=40.0, window=30.0)
 
@@ -54,7 +53,7 @@ def truth(path: Path) -> dict[int, Array]:
     return {1: np.array(rows)}
 
 
-def judge(folder: Path, scanner: str = str(SCANNER)) -> tuple[Judgment, int]:
+def judge(folder: Path, scanner: str = SCANNER) -> tuple[Judgment, int]:
     """Figures, and how many tracks were reported."""
     found = scans(folder / "radar_plots_sim.csv")
     tracks = followed(shipped(scanner), found, Setting(PERIOD))

@@ -11,6 +11,7 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.plurals import counted
+from fuzzytrack.recordings.scan_fit import ScanFit
 from fuzzytrack.recordings.scan_plots import ScanPlots
 from fuzzytrack.recordings.scan_run import ScannedScan, ScanTotals, run_scans, run_sectors
 from fuzzytrack.recordings.scan_table import ScanTable
@@ -199,13 +200,26 @@ class ScanJob:
     def run(
         self, *, tentative: bool = False, progress: Progress | None = None
     ) -> Iterator[ScannedScan]:
-        """Track scan by scan, or sector by sector; see `fuzzytrack.recordings.scan_run`."""
+        """Track scan by scan, or sector by sector; see `fuzzytrack.recordings.scan_run`.
+
+        After the last one, what says that the plots do not suit the scan tracker is noted.
+        """
         plots = self.plots
         if plots.sectors is None:
-            return run_scans(self.scanner, plots.scans(progress), tentative=tentative)
-        return run_sectors(
-            self.scanner, plots.rows(progress), plots.sectors, plots.cut.period, tentative=tentative
-        )
+            found = run_scans(self.scanner, plots.scans(progress), tentative=tentative)
+        else:
+            found = run_sectors(
+                self.scanner,
+                plots.rows(progress),
+                plots.sectors,
+                plots.cut.period,
+                tentative=tentative,
+            )
+        fit = ScanFit(self.scanner, whole=plots.sectors is None)
+        for each in found:
+            fit.add(each)
+            yield each
+        plots.findings.note(fit.notes())
 
     def whole(
         self, *, tentative: bool = False, progress: Progress | None = None

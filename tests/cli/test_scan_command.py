@@ -202,3 +202,35 @@ def test_polar_plots(run, real, tmp_path):
     found = json.loads(result.stdout)
     assert found["total"]["scans"] == 1125
     assert found["plots"] + found["faults"]["missed"] == 1576
+
+
+def test_given_noise_takes_the_place_of_that_of_the_configuration(run, csv, tmp_path):
+    """The deviations of tracks follow the options, in the directions of range and bearing."""
+    lines = ["scan,t,range,azimuth", *(f"{k},{2 * k},{900 + 2 * k},0" for k in range(30))]
+    plots, out = csv("\n".join(lines) + "\n"), tmp_path / "tracks.csv"
+
+    def deviations(*options):
+        result = run("scan", plots, "--polar", "range,azimuth", "-o", out, *options)
+        assert result.exit_code == 0, result.output
+        row = rows_of(out)[-1]
+        return float(row["x_sd"]), float(row["y_sd"])
+
+    usual = deviations()
+    exact = deviations("--sigma-range", "0.2", "--sigma-azimuth", "0.02")
+    wide = deviations("--sigma-range", "2", "--sigma-azimuth", "0.02")
+    assert exact[0] < usual[0]
+    assert exact[1] < usual[1]
+    assert wide[1] > 2 * exact[1]
+
+
+def test_plots_of_aircraft_are_noted(run, csv):
+    """They do not suit the usual configuration, which finds no track."""
+    lines = ["scan,t,x,y"]
+    lines += [f"{k},{4 * k},{600 * k},{j * 20_000}" for k in range(20) for j in range(2)]
+    result = run("scan", csv("\n".join(lines) + "\n"))
+    assert result.exit_code == 0, result.output
+    assert "note: neighboring plots of successive scans are typically 600 m apart" in result.stderr
+    assert "use config air (at most 350 m/s)" in result.stderr
+    assert "note: no track was confirmed in 20 scans" in result.stderr
+    told = json.loads(run("scan", csv("\n".join(lines) + "\n"), "--json").stdout)["notes"]
+    assert len(told) == 2

@@ -1,0 +1,259 @@
+"""Whether plots suit the configuration of a scan tracker: how far apart and how exact they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.plurals import counted
+from fuzzytrack.recordings.scan_run import ScannedScan
+from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scan.scan_tracker import ScanTracker
+from fuzzytrack.scan.scanners import load_scanner
+from fuzzytrack.scan.sensor import Sensor
+from fuzzytrack.scan.track_reports import STATUSES
+
+__all__ = ["ScanFit"]
+
+# Configurations for other radars, from slow targets and exact plots to fast ones and wide plots.
+_OTHERS = ("vessels", "air")
+# Plots of a recording that are looked at: those of so many scans, so many of each, in all.
+_SCANS, _OF_SCAN, _PLOTS = 200, 1_000, 20_000
+# A plot and its nearest one of the next scan are neighbors if the nearest one of the same scan is
+# so many times farther: plots that are independent of each other are so in one case of 17.
+_NEARER = 4.0
+# Neighbors that are needed, as a number and as a share of the plots, and the share of them that
+# must be too far apart.
+_NEIGHBORS, _OF_PLOTS, _TOO_FAR = 20, 0.2, 0.75
+# Ratios of given standard deviations to those of the configuration that are far off.
+_WIDER, _NARROWER = 5.0, 0.05
+# Scans and plots of which a track is expected.
+_SCANS_OF_TRACK, _PLOTS_OF_TRACK = 8, 20
+
+_TENTATIVE = STATUSES.index("tentative")
+
+
+@dataclass(frozen=True)
+class _Neighbors:
+    """Plots of a scan, each with its neighbor in the next one.
+
+    Attributes
+    ----------
+    distance : ndarray, shape (n,)
+        Of the two (m).
+    speed : ndarray, shape (n,)
+        At which the one gets to the other (m/s).
+    limit : ndarray, shape (n,)
+        Largest distance at which they could begin a track (m).
+    """
+
+    distance: Array
+    speed: Array
+    limit: Array
+
+
+class ScanFit:
+    """What the plots of a recording say against a configuration; it grows while they are tracked.
+
+    Parameters
+    ----------
+    scanner : ScanTracker
+        The configuration.
+    whole : bool
+        Whether scans are whole turns, whose plots can be compared with those of the next one.
+    """
+
+    def __init__(self, scanner: ScanTracker, *, whole: bool = True) -> None:
+        self._scanner = scanner
+        greatest = getattr(scanner.initiation, "greatest_speed", 0.0)
+        # Some configurations leave the way to the second plot to the gate.
+        self._greatest = float(greatest) if whole else 0.0
+        self._last: tuple[str, Scan] | None = None
+        self._scans = self._plots = self._seen = self._compared = 0
+        self._confirmed = False
+        self._neighbors: list[_Neighbors] = []
+        self._noise: list[tuple[Array, Array]] = []
+
+    def add(self, each: ScannedScan) -> None:
+        """Look at a scan, and at the tracks after it."""
+        scan = each.scan
+        self._scans += 1
+        self._plots += len(scan)
+        self._confirmed |= bool((each.reports.status != _TENTATIVE).any())
+        if self._scans > _SCANS or self._seen > _PLOTS:
+            return
+        self._seen += len(scan)
+        if scan.covariances is not None and len(scan):
+            self._noise.append(_given(scan))
+        last, self._last = self._last, (each.group, scan)
+        if self._greatest and last is not None and last[0] == each.group:
+            before = last[1]
+            if len(before) and len(scan):
+                self._compared += min(len(before), _OF_SCAN)
+                found = _neighbors(before, scan, self._scanner.sensor, self._greatest)
+                self._neighbors.append(found)
+
+    def notes(self) -> Iterator[str]:
+        """What a user should know, in sentences; nothing if the plots suit."""
+        told = False
+        missing = (
+            not self._confirmed
+            and self._scans >= _SCANS_OF_TRACK
+            and self._plots >= _PLOTS_OF_TRACK
+        )
+        for sentence in (self._of_distances(), self._of_noise()):
+            if sentence:
+                told = True
+                yield sentence
+        if missing:
+            yield f"no track was confirmed in {counted(self._scans, 'scan')}" + (
+                "" if told else f": {self._expected()}"
+            )
+
+    # ---------------------------------------------------------------- sentences
+
+    def _of_distances(self) -> str:
+        if not self._neighbors:
+            return ""
+        distance, speed, limit = (
+            np.concatenate([getattr(each, name) for each in self._neighbors])
+            for name in ("distance", "speed", "limit")
+        )
+        few = len(distance) < max(_NEIGHBORS, _OF_PLOTS * self._compared)
+        if few or np.mean(distance > limit) < _TOO_FAR:
+            return ""
+        usual, typical = float(np.median(speed)), float(np.median(distance))
+        return (
+            f"neighboring plots of successive scans are typically {_shown(typical)} m apart, as at "
+            f"{_shown(usual)} m/s; {self._name} lets a new track have at most "
+            f"{_shown(self._greatest)} m/s: {self._faster(usual)}raise initiation.greatest_speed"
+        )
+
+    def _faster(self, speed: float) -> str:
+        """Advice of a configuration for targets of this speed, if there is one."""
+        for name in _OTHERS:
+            greatest = getattr(load_scanner(name).initiation, "greatest_speed", 0.0)
+            if greatest >= speed and name != self._scanner.name:
+                return f"use config {name} (at most {_shown(greatest)} m/s), or "
+        return ""
+
+    def _of_noise(self) -> str:
+        if not self._noise:
+            return ""
+        sensor = self._scanner.sensor
+        given, ranges = (np.concatenate(each) for each in zip(*self._noise, strict=True))
+        for way, along, key in (
+            ("range", 0, "range_noise"),
+            ("bearing", 1, "bearing_noise"),
+        ):
+            own = float(np.median(_of_sensor(sensor, ranges)[:, along]))
+            usual = float(np.median(given[:, along]))
+            if usual > _WIDER * own or (along == 0 and usual < _NARROWER * own):
+                return (
+                    f"given standard deviations of plots are {_shown(usual)} m in {way} (median); "
+                    f"{self._name} is made for {_shown(own)} m (sensor.{key}): "
+                    f"{self._wider(usual, along, ranges)}or change the lengths (m) of clutter and "
+                    "kind in proportion"
+                )
+        return ""
+
+    def _wider(self, usual: float, along: int, ranges: Array) -> str:
+        """Advice of the configuration for such standard deviations, if there is one."""
+        found = {
+            name: float(np.median(_of_sensor(load_scanner(name).sensor, ranges)[:, along]))
+            for name in _OTHERS
+            if name != self._scanner.name
+        }
+        name = min(found, key=lambda name: abs(math.log(found[name] / usual)))
+        if usual / _WIDER < found[name] < usual * _WIDER:
+            return f"use config {name} ({_shown(found[name])} m), "
+        return ""
+
+    def _expected(self) -> str:
+        """What a configuration expects of targets and plots."""
+        sensor = self._scanner.sensor
+        said = [
+            f"plots exact to {_shown(math.hypot(sensor.range_noise, sensor.extra_noise))} m in "
+            f"range (sensor.range_noise)",
+            f"seen in {100 * sensor.detection:.0f} of 100 scans (sensor.detection)",
+        ]
+        if self._greatest:
+            said.append(f"at most {_shown(self._greatest)} m/s (initiation.greatest_speed)")
+        others = [name for name in _OTHERS if name != self._scanner.name]
+        return (
+            f"{self._name} expects {', '.join(said)}; if yours differ, use config "
+            f"{' or '.join(others)}, or change these numbers"
+        )
+
+    @property
+    def _name(self) -> str:
+        return self._scanner.name
+
+
+def _shown(value: float) -> str:
+    """A number of two digits before or after the point, without an exponent."""
+    digits = max(0, 1 - math.floor(math.log10(value))) if 0 < value < 10 else 0
+    return f"{float(f'{value:.2g}'):.{digits}f}"
+
+
+# -------------------------------------------------------------------- noise
+
+
+def _of_sensor(sensor: Sensor, ranges: Array) -> Array:
+    """Standard deviations along and across the line of sight (m), shape (n, 2)."""
+    along = np.full(len(ranges), math.hypot(sensor.range_noise, sensor.extra_noise))
+    across = np.hypot(sensor.bearing_noise * ranges, sensor.extra_noise)
+    return np.stack([along, across], axis=1)
+
+
+def _given(scan: Scan) -> tuple[Array, Array]:
+    """Standard deviations that a scan gives, shape (n, 2), and ranges of its plots (m)."""
+    assert scan.covariances is not None
+    offset = (scan.positions - np.array(scan.own))[:_OF_SCAN]
+    ranges = np.hypot(*offset.T)
+    x, y = np.where(ranges > 0, offset.T / np.where(ranges > 0, ranges, 1.0), [[1.0], [0.0]])
+    r11, r12, r22 = scan.covariances[:_OF_SCAN].T
+    along = x * x * r11 + 2 * x * y * r12 + y * y * r22
+    across = y * y * r11 - 2 * x * y * r12 + x * x * r22
+    return np.sqrt(np.maximum(np.stack([along, across], axis=1), 0.0)), ranges
+
+
+# -------------------------------------------------------------------- neighbors
+
+
+def _neighbors(before: Scan, scan: Scan, sensor: Sensor, greatest: float) -> _Neighbors:
+    """Plots of a scan with their neighbors in the next one."""
+    there = scan.positions
+    here = before.positions[:_OF_SCAN]
+    distance, nearest = _nearest(here, there)
+    alone, _ = _nearest(there[nearest], there, 2)
+    interval = _times(scan)[nearest] - _times(before)[: len(here)]
+    kept = (_NEARER * distance < alone) & (interval > 0)
+    distance, interval, nearest = distance[kept], interval[kept], nearest[kept]
+    if scan.covariances is None:
+        ranges = np.hypot(*(there[nearest] - np.array(scan.own)).T)
+        noise = _of_sensor(sensor, ranges).prod(axis=1)
+    else:
+        r11, r12, r22 = scan.covariances[nearest].T
+        noise = np.sqrt(np.maximum(r11 * r22 - r12 * r12, 0.0))
+    # What `fuzzytrack.scan.initiation.one_point` lets through.
+    limit = greatest * interval + 3.0 * np.sqrt(noise)
+    return _Neighbors(distance, distance / interval, limit)
+
+
+def _nearest(here: Array, there: Array, number: int = 1) -> tuple[Array, NDArray[np.intp]]:
+    """Distance and row of the nearest of `there`, or of a later one; infinite if there is none."""
+    # Here, since it takes long.
+    from scipy.spatial import KDTree
+
+    distance, row = KDTree(there).query(here, k=[number])
+    return distance[:, 0], row[:, 0]
+
+
+def _times(scan: Scan) -> Array:
+    return np.full(len(scan), scan.time) if scan.times is None else scan.times
