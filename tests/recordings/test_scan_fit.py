@@ -141,5 +141,5 @@ def test_the_notes_are_those_of_the_recording():
     t, x, y = np.array(rows).T
     found = ft.track_scans({"t": t, "x": x, "y": y}, sigma=30.0)
     told = found.job.plots.findings.notes
-    assert [each.split(" ")[0] for each in told] == ["neighboring", "given", "no"]
+    assert [each.split(" ")[0] for each in told[-3:]] == ["neighboring", "given", "no"]
     assert "neighboring plots" in found._repr_html_()
