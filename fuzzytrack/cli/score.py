@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import typer
@@ -159,7 +159,9 @@ def score(
     )
     with progress("scoring"):
         (given, there), notes = read_positions(tracks, truth, of_tracks, of_truth)
-        times = None if scans is None else read_times(scans, tracks, of_tracks)
+        # Without tracks the truth has the clock.
+        clocked = (tracks, of_tracks) if len(given) else (truth, _grouped(of_truth, group))
+        times = None if scans is None else read_times(scans, *clocked)
         scores = score_positions(
             given,
             there,
@@ -183,6 +185,10 @@ def score(
         _print_all(scores)
     if plot is not None:
         say(f"wrote {plot}")
+
+
+def _grouped(options: TableOptions, group: str | None) -> TableOptions:
+    return options if options.group is not None else replace(options, group=group)
 
 
 def _names(text: str | None, option: str) -> tuple[str, ...] | None:

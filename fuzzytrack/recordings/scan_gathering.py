@@ -252,9 +252,11 @@ class ScanGathering:
         self._recent = [*self._recent[1 - _REMEMBERED :], word]
 
     def _out_of_order(self, rows: ScanRows, time: float) -> DataError:
-        clock = self._rules.decoder.clock
+        clock, named = self._rules.decoder.clock, ""
+        if self._rules.cut.rule == "column":
+            named = f" {str(rows.scans[0])!r} of column {self._rules.scan_column}"
         return DataError(
-            f"{rows.file}: row {rows.rows[0]}, column {self._rules.decoder.columns.time}: the scan "
-            f"ends at {clock.as_cell(time)}, not later than {clock.as_cell(self._time)} of the one "
-            "before; `sort` puts plots in order of time, `lateness` leaves out late ones"
+            f"{rows.file}: row {rows.rows[0]}, column {self._rules.decoder.columns.time}: the scan"
+            f"{named} ends at {clock.as_cell(time)}, not later than {clock.as_cell(self._time)} of "
+            "the one before; `sort` puts plots in order of time, `lateness` leaves out late ones"
         )

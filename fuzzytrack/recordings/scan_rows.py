@@ -18,6 +18,7 @@ from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.table import Kind, Table
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.reprs import summary
+from fuzzytrack.scan.stages.plots import LARGEST
 from fuzzytrack.tasks import Progress
 
 __all__ = ["RowColumns", "ScanRows", "places_of", "read_rows"]
@@ -162,6 +163,7 @@ def rows_of(
     named = columns.own or decoder.columns.own_ship
     if named:
         own = places_of(table.numbers, named, decoder)
+    _check_size(positions, table, decoder)
     packed = None
     if covariance is not None:
         packed = covariance[:, [0, 0, 1], [0, 1, 1]]
@@ -175,6 +177,19 @@ def rows_of(
         packed,
         table.file,
     )
+
+
+def _check_size(positions: Array, table: Table, decoder: PlotDecoder) -> None:
+    """Check that a scan tracker can use the numbers."""
+    with np.errstate(invalid="ignore"):
+        beyond = np.argwhere(np.abs(positions) > LARGEST)
+    if len(beyond):
+        row, axis = beyond[0].tolist()
+        names = ", ".join(decoder.columns.axes[:PLANE])
+        raise DataError(
+            f"{table.file}: row {table.rows[row]}, columns {names}:"
+            f" a position of {positions[row, axis]:g} m; expected numbers below {LARGEST:g}"
+        )
 
 
 def _words(table: Table, name: str) -> NDArray[np.str_]:

@@ -239,7 +239,7 @@ class SectorPass:
         ahead = (time - tracks.time)[:, None]
         offset = tracks.position + ahead * tracks.velocity - self._own
         share = np.arctan2(offset[:, 0], offset[:, 1]) / _FULL
-        # Tentative tracks come half a sector later, so that none behind a border takes
+        # Tentative tracks come half a sector later, so that none on the other side of a border takes
         # the plot of a confirmed one.
         late = np.where(tracks.status == _TENTATIVE, _LATER, 0.0)
         turned = (share if self._beam.clockwise else -share) * n

@@ -110,4 +110,7 @@ def complaint(answer: int, scan: Scan, j: int) -> DataError:
     assert answer == BAD_COVARIANCE
     assert scan.covariances is not None
     values = ", ".join(f"{value:g}" for value in scan.covariances[j])
-    return DataError(f"{plot}: covariance ({values}) m²; needs xx > 0, yy > 0, xy² < xx·yy")
+    return DataError(
+        f"{plot}: covariance ({values}) m²; needs xx and yy > 0 and at most {LARGEST:g}, "
+        "xy² < xx·yy"
+    )

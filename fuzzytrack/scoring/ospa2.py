@@ -48,6 +48,7 @@ def ospa2(scene: Scene, pairs: ClosePairs, cutoff: float, order: float, window: 
     Transactions on Signal Processing 68 (2020), section II, with equal weights and q = p.
     """
     count, whole = len(scene.time), cutoff**order
+    window = min(window, count)
     true_key, true_rows = _in_windows(scene.truth, count, window)
     track_key, track_rows = _in_windows(scene.tracks, count, window)
     gain = whole - pairs.distance**order

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.column_names import plain_name
-from fuzzytrack.io.columns import choose_columns, known, looks_like_identity, time_columns
+from fuzzytrack.io.columns import Columns, choose_columns, known, looks_like_identity, time_columns
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.findings import Findings
@@ -61,6 +61,16 @@ class TableOptions:
 
 
 @dataclass(frozen=True, eq=False)
+class _Header:
+    """The columns of a table: of the plots, and others by use; the reading that names them."""
+
+    inputs: tuple[str, ...]
+    reading: Reading
+    columns: Columns
+    others: dict[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, eq=False)
 class _Opened:
     """A table whose columns are known: how its plots are read, and its other columns by use."""
 
@@ -97,9 +107,14 @@ def read_positions(
     OSError
         If a file cannot be read.
     """
-    first = _opened(tracks, "tracks", of_tracks or TableOptions())
-    options = _like(of_truth or TableOptions(), of_tracks or TableOptions(), first, truth)
+    header = _header(tracks, "tracks", of_tracks or TableOptions())
+    options = _like(of_truth or TableOptions(), of_tracks or TableOptions(), header.columns, truth)
     second = _opened(truth, "truth", options)
+    if not _has_rows(header):
+        there, _ = _read(second, "truth", tentative=True)
+        notes = ["tracks: no rows, so there is no track", f"truth: {_sentence(second)}"]
+        return (_none_like(there), there), tuple(notes)
+    first = _with_files(header)
     second = replace(second, files=_in_frame(second.files, first.files))
     given, left_out = _read(first, "tracks", tentative=(of_tracks or TableOptions()).tentative)
     there, _ = _read(second, "truth", tentative=True)
@@ -139,13 +154,12 @@ def _sentence(table: _Opened) -> str:
 
 
 def _like(
-    options: TableOptions, model: TableOptions, table: _Opened, file: PathLike
+    options: TableOptions, model: TableOptions, columns: Columns, file: PathLike
 ) -> TableOptions:
     """Options of the truth, with the columns of the tracks where it has the same ones."""
     said = options.reading.description
     with opened(recording_files(file)[0], options.reading) as source:
         there = {name.lower() for name in source.types}
-    columns = table.files.columns
     if all(getattr(said, name) is None for name in ("axes", "polar", "geodetic", "angle")):
         same = all(name.lower() in there for name in columns.read)
         if same and columns.position == "cartesian":
@@ -160,8 +174,33 @@ def _like(
     return replace(options, reading=replace(options.reading, description=said), group=group)
 
 
+def _has_rows(header: _Header) -> bool:
+    """Whether a table has rows, or only names of columns, as of a tracker that found nothing."""
+    for each in header.inputs:
+        with opened(each, header.reading) as source:
+            if any(len(table.rows) for table in source.tables({header.columns.time: "word"}, 1)):
+                return True
+    return False
+
+
+def _none_like(truth: Positions) -> Positions:
+    """No track, in the recordings of the truth."""
+    group = None if truth.group is None else truth.group[:0]
+    none = np.empty(0)
+    return Positions.make("tracks", none, none, truth.position[:0], group=group)
+
+
 def _opened(file: PathLike, name: str, options: TableOptions) -> _Opened:
-    """Find the columns of a table."""
+    """Find the columns of a table, and what its first rows show."""
+    return _with_files(_header(file, name, options))
+
+
+def _with_files(header: _Header) -> _Opened:
+    return _Opened(PlotFiles.of(header.inputs, header.reading), header.others)
+
+
+def _header(file: PathLike, name: str, options: TableOptions) -> _Header:
+    """Find the columns of a table by its header."""
     inputs = recording_files(file)
     with opened(inputs[0], options.reading) as source:
         names = tuple(source.types)
@@ -180,8 +219,7 @@ def _opened(file: PathLike, name: str, options: TableOptions) -> _Opened:
             )
         others = _others(names, source.file, options, columns.read)
     said = replace(said, id=id, axes=columns.read if columns.position == "cartesian" else None)
-    files = PlotFiles.of(inputs, replace(options.reading, description=said))
-    return _Opened(files, others)
+    return _Header(inputs, replace(options.reading, description=said), columns, others)
 
 
 def _with_position(said: PlotDescription, names: tuple[str, ...]) -> PlotDescription:

@@ -175,6 +175,8 @@ def score_positions(
 def _lag_of(lag: Lag, group: object) -> float:
     """Lag of a group (s); 0 where it is fitted, or there is none."""
     if isinstance(lag, Mapping):
+        if group is None:
+            raise ValueError("lag: is given by group, but there are no groups; expected one number")
         if str(group) not in lag:
             raise ValueError(f"lag: has no group {str(group)!r}; expected a lag of every group")
         lag = lag[str(group)]
@@ -291,7 +293,12 @@ def _notes(
         if group.left_out:
             rows = counted(group.left_out, "row")
             notes.append(f"{where}{rows} of static tracks far from the truth left out")
-        if group.at_ends:
+        if group.at_ends == len(group.time) and len(tracks):
+            notes.append(
+                f"{where}no track has a row within the time of the truth; `lag`, or another column "
+                "of time, may be meant"
+            )
+        elif group.at_ends:
             notes.append(
                 f"{where}{counted(group.at_ends, 'instant')} before the first row of tracks or "
                 "after the last one, where the truth is known; `scans` says when there were scans"

@@ -144,7 +144,11 @@ def test_python_gives_the_same(run, harbor, tmp_path):
         ("scan,t,a,b\n0,0,1,1\n", [], "no columns x, y or x_m, y_m"),
         ("scan,t,x,y\n", [], "holds no rows"),
         ("", [], "is empty"),
-        ("scan,t,x,y\n0,5,1,1\n1,4,1,1\n", [], "row 3, column t: the scan ends at 4, not later"),
+        (
+            "scan,t,x,y\n0,5,1,1\n1,4,1,1\n",
+            [],
+            "row 3, column t: the scan '1' of column scan ends at 4, not later",
+        ),
         ("scan,t,x,y\n0,nan,1,1\n", [], "row 2, column t: 'nan'"),
         ("scan,t,x,y\n0,0,1,abc\n", [], "row 2, column y: 'abc'"),
         ("t,x,y\n0,1,1\n5,1,1\n4,1,1\n", ["--period", "2"], "row 4, column t: 4 is earlier than 5"),

@@ -167,3 +167,35 @@ def test_real_boats_with_a_late_clock(run, real, csv):
     words = ("--truth", truth, "--group", "scenario", "--lag", "2=2.25,4=3.5,16=1.75", "--json")
     told = json.loads(run("score", tracks, *words).stdout)
     assert [group["lag"] for group in told["groups"]] == [2.25, 3.5, 1.75]
+
+
+def test_a_tracker_that_found_nothing(run, csv):
+    none, truth = csv("t,track_id,x,y\n", "none.csv"), csv(TRUTH, "truth.csv")
+    scans = csv("scan,t\n" + "".join(f"{t},{t}\n" for t in range(5)), "scans.csv")
+    for words in ((), ("--scans", scans)):
+        result = run("score", none, "--truth", truth, *words)
+        assert result.exit_code == 0, result.output
+        assert cells(result.stdout, "OSPA (m)") == ["20"]
+    assert "5 instants" in result.stdout
+
+
+def test_a_window_longer_than_the_recording_is_all_of_it(run, files):
+    long = run("score", *files, "--window", 10**12)
+    assert long.exit_code == 0, long.output
+    assert cells(long.stdout, "OSPA(2) (m)") == cells(
+        run("score", *files, "--window", 21).stdout, "OSPA(2) (m)"
+    )
+
+
+def test_a_lag_by_group_needs_groups(run, files):
+    result = run("score", *files, "--lag", "2=1.5")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "error: --lag: is given by group, but there are no groups; expected one number\n"
+    )
+
+
+def test_tracks_of_another_time_are_noted(run, csv, files):
+    late = csv("t,id,x,y\n" + "".join(f"{9000 + t},a,0,0\n" for t in range(9)), "late.csv")
+    result = run("score", files[0], "--truth", late)
+    assert "no track has a row within the time of the truth; --lag" in result.stderr

@@ -291,7 +291,7 @@ def test_times_that_fall():
 
 def test_scans_that_fall_back():
     data = plots_of(scan=[0, 1, 2], t=[0, 5, 4], x=range(3), y=range(3))
-    with pytest.raises(DataError, match="row 3, column t: the scan ends at 4, not later than 5"):
+    with pytest.raises(DataError, match="row 3, column t: the scan '2' of column scan ends at 4"):
         read(data)
     made, found = read(data, lateness=0)
     assert (len(found), made.findings.late) == (2, 1)
@@ -385,3 +385,16 @@ def test_identities_are_not_used():
     assert made.findings.notes[:1] == ["column 'track_id': identities of plots are not used"]
     made, _ = read({**THREE, "who": list("abcde")}, {"id": "who"}, scan="n")
     assert made.findings.notes[:1] == ["column 'who': identities of plots are not used"]
+
+
+def test_positions_beyond_all_numbers_are_named_by_their_row():
+    y = [0.0] * 7 + [-3e12]
+    data = {"t": range(8), "x": [0.0] * 8, "y": y}
+    with pytest.raises(DataError, match=r"row 8, columns x, y: a position of -3e\+12 m; expected"):
+        list(ScanPlots.of(data, period=1.0).scans())
+
+
+def test_a_scan_that_is_not_later_is_named_by_its_word():
+    data = {"scan": ["a", "a", "b"], "t": [0.0, 1.0, 1.0], "x": [0, 1, 2], "y": [0, 1, 2]}
+    with pytest.raises(DataError, match=r"row 3, column t: the scan 'b' of column scan ends at 1,"):
+        list(ScanPlots.of(data).scans())

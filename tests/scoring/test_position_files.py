@@ -149,3 +149,25 @@ def test_times_of_scans(write):
     assert read_times(seconds, tracks).tolist() == [4]
     with pytest.raises(DataError, match="no column t, time or timestamp"):
         read_times(other, tracks)
+
+
+@pytest.mark.parametrize("group", [None, "scenario"])
+def test_a_table_without_rows_is_no_track(write, group):
+    tracks = write("scenario,t,track_id,north,east\n")
+    truth = write(
+        "scenario,t,id,north,east\n2,0,a,0,0\n2,1,a,1,2\n4,0,a,0,0\n4,1,b,1,2\n", "truth.csv"
+    )
+    if group is None:
+        truth = write("t,id,north,east\n0,a,0,0\n1,a,1,2\n", "truth.csv")
+    (none, there), notes = read_positions(tracks, truth, TableOptions(group=group))
+    assert len(none) == 0
+    assert notes[0] == "tracks: no rows, so there is no track"
+    scores = ft.score(none, there, cutoff=20.0)
+    assert scores.means["ospa"] == 20.0
+    assert scores.means["share_tracked"] == 0.0
+    assert len(scores.groups) == (1 if group is None else 2)
+
+
+def test_a_table_without_rows_has_its_columns(write):
+    with pytest.raises(DataError, match="no column of the identity of tracks"):
+        read_positions(write("t,x,y\n"), write(TRUTH, "truth.csv"))
