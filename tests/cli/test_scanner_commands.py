@@ -141,3 +141,29 @@ def test_a_part_of_a_script_is_there_with_the_option(run, fails, mine, tmp_path)
     assert "The first plot of each track" in text
     found = run("scanner", "schema", "--plugin", script).stdout
     assert "first-come" in found
+
+
+# -------------------------------------------------------------------- tune
+
+
+@pytest.mark.untraced
+def test_tune(run, tmp_path):
+    out = tmp_path / "tuned.yaml"
+    words = (
+        "scanner", "tune", "default", "crossing:scans.count=8", "--runs", "1", "--trials", "4",
+        "--free", "confirmation.hits,gate.limit", "--json",
+    )  # fmt: skip
+    result = run(*words, "-o", out)
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    assert found["numbers"].keys() == {"confirmation.hits", "gate.limit"}
+    tuned = load_scanner(out)
+    assert tuned.gate.limit == pytest.approx(found["numbers"]["gate.limit"])
+    assert tuned.confirmation.hits == found["numbers"]["confirmation.hits"]
+    assert tuned.clutter == ScanTracker().clutter
+
+
+def test_what_cannot_be_tuned_is_told_in_one_line(fails):
+    words = ("scanner", "tune", "default", "crossing:scans.count=8")
+    assert "no number 'gate.limt'" in fails(*words, "--free", "gate.limt")
+    assert "unknown 'osp'" in fails(*words, "--metric", "osp")

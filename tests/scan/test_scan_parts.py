@@ -181,20 +181,3 @@ def test_a_track_that_was_lost_keeps_its_identity():
     assert found[11] == [1, 2]
     assert found[28] == [2]
     assert found[39] == [1, 2]
-
-
-def test_all_parts_of_this_file_run_compiled_as_in_plain_python():
-    tracker = ScanTracker(
-        extraction=Merging(2.0),
-        candidates=KdTree(),
-        quality=LogLikelihoodRatio(),
-        identity=Dormant(),
-    )
-    compiled, plain = tracker.start(), ScanSession(tracker, plain=True)
-    rng = np.random.default_rng(5)
-    for scan in two_boats(16, gap=(7,)):
-        z = np.concatenate([scan.positions, rng.uniform(-200, 200, (6, 2))])
-        one = compiled.step(Scan(scan.time, z), tentative=True)
-        other = plain.step(Scan(scan.time, z), tentative=True)
-        for name in ("track_id", "position", "existence", "plot", "kind", "status"):
-            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))

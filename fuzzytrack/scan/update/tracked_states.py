@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.scan.clock import LATEST, PLOTS, ROWS
-from fuzzytrack.scan.plot_columns import PLOT_TIME, PLOT_X, PLOT_Y, R11, R22
-from fuzzytrack.scan.track_columns import STATUS, TIME, X, Y
+from fuzzytrack.scan.plot_columns import PLOT_TIME, PLOT_X, PLOT_Y, R11, R22, RECORDED
+from fuzzytrack.scan.track_columns import PLOT, STATUS, TIME, X, Y
 from fuzzytrack.trackers.track_store import TrackStore
 
 __all__ = ["MEMORY", "NEXT", "PREDICTED", "SLOT", "TrackedStates"]
@@ -92,9 +92,14 @@ class TrackedStates:
 
     def _plots(self, work: Any, rows: Any) -> Any:
         """Plots at which tracks have started."""
-        plot = np.zeros(work.counts[ROWS], np.int64)
-        used = np.flatnonzero(work.track_of[: work.counts[PLOTS]] >= 0)
-        plot[work.track_of[used]] = used
+        count = work.counts[ROWS]
+        row = work.track_of[: work.counts[PLOTS]]
+        used = np.flatnonzero((row >= 0) & (row < count))
+        # A track may end with a plot: its row is then gone, or that of a new track.
+        last = work.tracks[row[used], PLOT]
+        used = used[work.plots[used, RECORDED] == last]
+        plot = np.zeros(count, np.int64)
+        plot[row[used]] = used
         return plot[rows]
 
     def _rows(self, work: Any) -> Any:
