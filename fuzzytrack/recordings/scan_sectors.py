@@ -239,8 +239,8 @@ class SectorPass:
         ahead = (time - tracks.time)[:, None]
         offset = tracks.position + ahead * tracks.velocity - self._own
         share = np.arctan2(offset[:, 0], offset[:, 1]) / _FULL
-        # Tentative tracks come half a sector later, so that none on the other side of a border takes
-        # the plot of a confirmed one.
+        # Tentative tracks come half a sector later, so that none on the other side of a border
+        # takes the plot of a confirmed one.
         late = np.where(tracks.status == _TENTATIVE, _LATER, 0.0)
         turned = (share if self._beam.clockwise else -share) * n
         place = np.floor(turned + late).astype(np.int64)
