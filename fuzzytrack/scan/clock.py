@@ -24,7 +24,6 @@ __all__ = [
     "ROWS",
     "SCAN",
     "SCAN_TIME",
-    "SORTED",
     "TENTATIVE_TOO",
     "WHERE",
     "WIDEST",
@@ -60,8 +59,6 @@ HAS_COVARIANCES, HAS_TIMES, HAS_DUE, HAS_STARTS = 7, 8, 9, 10
 NEW_SCAN = 11
 #: Plot at which a stage had to stop.
 WHERE = 12
-#: Whether the rows of reports are in the order of identities.
-SORTED = 13
 #: Whether rows of the recording are given.
-HAS_ROWS = 14
-COUNTS_WIDTH = 16
+HAS_ROWS = 13
+COUNTS_WIDTH = 14

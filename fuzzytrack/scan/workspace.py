@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.scan.clock import CLOCK_WIDTH, COUNTS_WIDTH, NEXT_ID, REPORTS, SORTED
+from fuzzytrack.scan.clock import CLOCK_WIDTH, COUNTS_WIDTH, NEXT_ID, REPORTS
 from fuzzytrack.scan.plot_columns import PLOT_WIDTH
 from fuzzytrack.scan.report_columns import (
     REPORT_DEVIATION,
@@ -166,11 +166,7 @@ def reported(work: Workspace) -> TrackReports:
     """What the last stage has written, copied."""
     n = work.counts[REPORTS]
     numbers, whole, words = work.report[:n], work.report_whole[:n], work.report_words[:n]
-    if work.counts[SORTED]:
-        numbers, whole, words = numbers.copy(), whole.copy(), words.copy()
-    else:
-        order = np.argsort(whole[:, REPORT_ID], kind="stable")
-        numbers, whole, words = numbers[order], whole[order], words[order]
+    numbers, whole, words = numbers.copy(), whole.copy(), words.copy()
     return TrackReports(
         whole[:, REPORT_SCAN],
         numbers[:, REPORT_TIME],

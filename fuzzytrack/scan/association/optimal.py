@@ -165,6 +165,26 @@ def _augment(
         j = given_up
 
 
+def _best_is_free(
+    row: int, count: int, first: Any, plot: Any, cost: Any, plot_of: Any, track_of: Any,
+    numbers: Any,
+) -> bool:  # fmt: skip
+    """Whether the search from a track ends at its first plot, or at none; the pair is then made."""
+    best, at = 0.0, -1
+    for e in range(first[row], first[row + 1]):
+        length = cost[e] - numbers[plot[e]]
+        if length < best:
+            best, at = length, e
+    if at < 0:
+        return True
+    j = plot[at]
+    if track_of[j] >= 0:
+        return False
+    plot_of[row], track_of[j] = j, row
+    numbers[3 * count + j] = cost[at]
+    return True
+
+
 def _assign(
     rows: int, count: int, first: Any, plot: Any, cost: Any, plot_of: Any, track_of: Any,
     integers: Any, numbers: Any,
@@ -173,6 +193,9 @@ def _assign(
     settled_at = len(integers) - _MOST_SETTLED - 1
     for i in range(rows):
         if plot_of[i] >= 0 or first[i + 1] == first[i]:
+            continue
+        # Most tracks compete with none, and need no search.
+        if _best_is_free(i, count, first, plot, cost, plot_of, track_of, numbers):
             continue
         end_plot, end_row, length, settled = _search(
             i, count, first, plot, cost, plot_of, track_of, integers, numbers

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from fuzzytrack.scan.clock import HAS_DUE, REPORTS, ROWS, SCAN, SCAN_TIME, SORTED, TENTATIVE_TOO
+from fuzzytrack.scan.clock import HAS_DUE, REPORTS, ROWS, SCAN, SCAN_TIME, TENTATIVE_TOO
 from fuzzytrack.scan.kind.base import KindKernels
 from fuzzytrack.scan.quality.base import QualityKernels
 from fuzzytrack.scan.report.base import ReportKernels
@@ -30,8 +30,57 @@ from fuzzytrack.scan.update.base import UpdateKernels
 
 __all__ = ["report_stage"]
 
-#: Most tracks that are put in the order of identities here.
-_FEW = 64
+#: Values of a digit by which identities are put in order; the scratch of parts has room for them.
+_DIGITS = 256
+
+
+def find_places(tracks: Any, order: Any, n: int, place: Any, spare: Any, counters: Any) -> None:
+    """Find the place of each track in the order of identities, digit by digit of these.
+
+    Parameters
+    ----------
+    tracks : ndarray
+    order : ndarray of int
+        Rows of `n` tracks, 1 at least.
+    place : ndarray of int
+        The place of each of them, written here.
+    spare, counters : ndarray of int
+        Scratch, of `n` and `_DIGITS` numbers.
+    """
+    least = most = int(tracks[order[0], ID])
+    for k in range(n):
+        identity = int(tracks[order[k], ID])
+        least, most = min(least, identity), max(most, identity)
+        place[k] = identity
+    shift = 0
+    while n >> shift > 0:
+        shift += 1
+    numbers = (1 << shift) - 1
+    for k in range(n):
+        # Both in one number, so that they move together.
+        place[k] = ((place[k] - least) << shift) + k
+    left = most - least
+    while left > 0:
+        for digit in range(_DIGITS):
+            counters[digit] = 0
+        for k in range(n):
+            counters[(place[k] >> shift) & (_DIGITS - 1)] += 1
+        begin = 0
+        for digit in range(_DIGITS):
+            here = counters[digit]
+            counters[digit] = begin
+            begin += here
+        for k in range(n):
+            digit = (place[k] >> shift) & (_DIGITS - 1)
+            spare[counters[digit]] = place[k]
+            counters[digit] += 1
+        for k in range(n):
+            place[k] = spare[k]
+        shift, left = shift + 8, left >> 8
+    for k in range(n):
+        spare[place[k] & numbers] = k
+    for k in range(n):
+        place[k] = spare[k]
 
 
 def report_stage(
@@ -78,18 +127,16 @@ def report_stage(
                 n += 1
                 in_order = in_order and tracks[i, ID] > last
                 last = tracks[i, ID]
-        if not in_order and n <= _FEW:
-            for k in range(1, n):
-                i, place = order[k], k
-                while place > 0 and tracks[order[place - 1], ID] > tracks[i, ID]:
-                    order[place] = order[place - 1]
-                    place -= 1
-                order[place] = i
-            in_order = True
+        # As are edges, free rows, and what the association has written.
+        place = work.first
+        if in_order:
+            for k in range(n):
+                place[k] = k
+        else:
+            find_places(tracks, order, n, place, work.free, work.integers)
         for k in range(n):
-            write(tracks, order[k], work, k, clock[SCAN_TIME])
+            write(tracks, order[k], work, place[k], clock[SCAN_TIME])
         counts[REPORTS] = n
-        counts[SORTED] = 1 if in_order else 0
         return DONE
 
     return report_stage

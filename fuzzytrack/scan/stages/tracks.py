@@ -103,10 +103,13 @@ def follow_stage(
     def follow_stage(work: Any) -> int:
         tracks, plots, clock, counts = work.tracks, work.plots, work.clock, work.counts
         cells, kept, plot_of, due = work.cells, work.kept, work.plot_of, work.due
-        rows, some_due = counts[ROWS], counts[HAS_DUE] > 0
+        rows, some_due, free = counts[ROWS], counts[HAS_DUE] > 0, work.free
+        n = 0
         for i in range(rows):
             status = tracks[i, STATUS]
             if status == 0.0:
+                free[n] = i
+                n += 1
                 continue
             if some_due and due[i] == 0:
                 tracks[i, PLOT] = -1.0
@@ -129,6 +132,9 @@ def follow_stage(
                 if status == CONFIRMED:
                     identity_end(tracks, i, clock, kept)
                 tracks[i, STATUS] = 0.0
+                free[n] = i
+                n += 1
+        counts[FREE] = n
         return DONE
 
     return follow_stage
@@ -157,62 +163,63 @@ def start_stage(
         confirmation_start(tracks, i, plots, j, clock)
         return decide(tracks, i, clock)
 
-    def collect_rows(tracks: Any, free: Any, counts: Any) -> None:
-        """Find the rows without a track, the first ones last, and forget those at the end."""
-        rows, n = counts[ROWS], 0
-        while rows > 0 and tracks[rows - 1, STATUS] == 0.0:
-            rows -= 1
-        for i in range(rows - 1, -1, -1):
-            if tracks[i, STATUS] == 0.0:
-                free[n] = i
-                n += 1
-        counts[ROWS], counts[FREE] = rows, n
-
     def start_stage(work: Any) -> int:
         tracks, plots, clock, counts = work.tracks, work.plots, work.clock, work.counts
         cells, free, due = work.cells, work.free, work.due
-        track_of, some_due = work.track_of, counts[HAS_DUE] > 0
-        collect_rows(tracks, free, counts)
+        track_of, order, some_due = work.track_of, work.order, counts[HAS_DUE] > 0
+        number = work.found
+        used, n_free, confirmed = 0, counts[FREE], 0
+        # Free rows at the end are forgotten.
+        while n_free > 0 and free[n_free - 1] == counts[ROWS] - 1:
+            n_free -= 1
+            counts[ROWS] -= 1
         for j in range(counts[PLOTS]):
+            number[order[j]] = 0
             if track_of[j] >= 0:
                 continue
             if plots[j, STARTS] == 0.0:
                 clutter_leave(plots, j, clock, cells)
                 continue
-            n = counts[FREE]
-            i = free[n - 1] if n > 0 else counts[ROWS]
+            i = free[used] if used < n_free else counts[ROWS]
             answer = begin(tracks, i, plots, j, clock)
             if answer == END:
                 tracks[i, STATUS] = 0.0
                 clutter_drop(plots, j, clock, cells)
                 continue
-            if n > 0:
-                counts[FREE] = n - 1
+            if used < n_free:
+                used += 1
             else:
                 counts[ROWS] = i + 1
             track_of[j] = i
             if answer == CONFIRM:
                 tracks[i, STATUS] = CONFIRMED
+                confirmed += 1
             clutter_start(tracks, i, plots, j, clock, cells)
-            # Its identity follows when all new tracks are known.
-            tracks[i, ID] = 0.0
+            number[order[j]] = 1
             if some_due:
                 due[i] = 1
-        number_new(work)
+        counts[FREE] = n_free - used
+        number_new(work, confirmed)
         return DONE
 
-    def number_new(work: Any) -> None:
+    def number_new(work: Any, confirmed: int) -> None:
         """Give new tracks their identities in the order of the plots that were given."""
         tracks, counts, track_of = work.tracks, work.counts, work.track_of
-        found, order = work.found, work.order
-        for j in range(counts[PLOTS]):
-            found[order[j]] = j
-        for k in range(counts[PLOTS]):
-            i = track_of[found[k]]
-            if i >= 0 and tracks[i, ID] == 0.0:
-                tracks[i, ID] = counts[NEXT_ID]
+        number, order, count = work.found, work.order, counts[PLOTS]
+        for k in range(count):
+            if number[k] > 0:
+                number[k] = counts[NEXT_ID]
                 counts[NEXT_ID] += 1
-                if tracks[i, STATUS] == CONFIRMED:
-                    tracks[i, ID] = identity_confirm(tracks, i, work.clock, work.kept)
+        for j in range(count):
+            if number[order[j]] > 0:
+                tracks[track_of[j], ID] = number[order[j]]
+        if confirmed == 0:
+            return
+        for j in range(count):
+            number[order[j]] = track_of[j] if number[order[j]] > 0 else -1
+        for k in range(count):
+            i = number[k]
+            if i >= 0 and tracks[i, STATUS] == CONFIRMED:
+                tracks[i, ID] = identity_confirm(tracks, i, work.clock, work.kept)
 
     return start_stage
