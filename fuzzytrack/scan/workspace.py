@@ -90,6 +90,8 @@ class Workspace(NamedTuple):
 #: Arrays of which the content lives from scan to scan; the others are scratch.
 LASTING = ("tracks", "clock", "counts", "cells", "kept")
 _ROOM, _PLOTS, _EDGES = 64, 64, 256
+#: Numbers in a line of the cache.
+_LINE = 8
 
 
 def new_workspace(tracker: ScanParts) -> Workspace:
@@ -100,9 +102,34 @@ def new_workspace(tracker: ScanParts) -> Workspace:
     cells, kept = np.zeros(tracker.clutter.numbers + 1), np.zeros(tracker.identity.numbers + 1)
     empty = _scratch(tracker, _ROOM, _PLOTS, _EDGES)
     return Workspace(
-        tracks=np.empty((_ROOM, tracker.width)), clock=clock, counts=counts,
+        tracks=_aligned(_ROOM, tracker.width), clock=clock, counts=counts,
         cells=cells, kept=kept, **empty,
     )  # fmt: skip
+
+
+def _aligned(rows: int, width: int, flat: Array | None = None) -> Array:
+    """Numbers of which the first begins a line of the cache; in a flat array if one is given."""
+    flat = np.empty(rows * width + _LINE) if flat is None else flat
+    begin = -flat.ctypes.data // flat.itemsize % _LINE
+    return flat[begin : begin + rows * width].reshape(rows, width)
+
+
+def _with_rows(tracks: Array, room: int) -> Array:
+    """The same tracks with room for more."""
+    used, width = tracks.shape
+    flat = tracks.base
+    if flat is None:
+        more = _aligned(room, width)
+        more[:used] = tracks
+        return more
+    # In place where the system can move pages, so that memory is never needed twice.
+    begin = (tracks.ctypes.data - flat.ctypes.data) // flat.itemsize
+    flat.resize(room * width + _LINE, refcheck=False)
+    more = _aligned(room, width, flat)
+    moved = flat[begin : begin + used * width].reshape(used, width)
+    if moved.ctypes.data != more.ctypes.data:
+        more[:used] = moved
+    return more
 
 
 def _scratch(tracker: ScanParts, room: int, plots: int, edges: int) -> dict[str, Any]:
@@ -113,7 +140,7 @@ def _scratch(tracker: ScanParts, room: int, plots: int, edges: int) -> dict[str,
     )  # fmt: skip
     floats = max(candidates.numbers(plots), association.numbers(room, plots, edges))
     return {
-        **{name: np.empty((plots, PLOT_WIDTH)) for name in ("given", "plots")},
+        **{name: _aligned(plots, PLOT_WIDTH) for name in ("given", "plots")},
         **{name: np.empty(plots, np.int64) for name in ("order", "found", "track_of")},
         "due": np.empty(room, np.uint8),
         "free": np.empty(room, np.int64),
@@ -139,10 +166,7 @@ def with_room(work: Workspace, tracker: ScanParts, rows: int, plots: int, edges:
     more = work._asdict()
     if rows > room:
         room = rows + rows // 4
-        # In place where the system can move pages, so that memory is never needed twice.
-        tracks = np.require(work.tracks, requirements="O")
-        tracks.resize((room, tracks.shape[1]), refcheck=False)
-        more["tracks"] = tracks
+        more["tracks"] = _with_rows(work.tracks, room)
     have_plots = plots + plots // 4 if plots > have_plots else have_plots
     have_edges = edges + edges // 4 if edges > have_edges else have_edges
     for name in set(more) - set(LASTING):

@@ -154,6 +154,14 @@ class GridCandidates(Candidates):
             n = 0
             for up in range(low, high + 1):
                 start = _HEAD + (up & integers[_UP]) * columns
+                # Cells of a strip follow each other, so a few plots are one range.
+                first, last = left & integers[_ACROSS], right & integers[_ACROSS]
+                begin, end = integers[start + first], integers[start + last + 1]
+                if first <= last and end - begin <= _MOST_IN_CELL and end - begin <= _MOST - n:
+                    for row in range(begin, end):
+                        found[n] = row
+                        n += 1
+                    continue
                 for across in range(left, right + 1):
                     k = start + (across & integers[_ACROSS])
                     begin, end = integers[k], integers[k + 1]

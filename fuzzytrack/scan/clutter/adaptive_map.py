@@ -87,6 +87,10 @@ class AdaptiveMap(Clutter):
         )  # fmt: skip
         first, scans, rate = self.level * self.scans, self.scans, 1.0 / self.memory_scans
         weight_at, count_at, places = at, at + 1, at + 2
+        # Of scores below, the weight is larger than `nearly`; half a change, so that rounding does
+        # not count.
+        nearly = innocence - 0.5 * _CHANGE
+        unlikely = known + math.log(0.5 * _CHANGE / nearly) if nearly > 0.0 else known
 
         def add(x: float, y: float, weight: float, cells: Any) -> None:
             add_fine(x, y, weight, cells)
@@ -144,6 +148,9 @@ class AdaptiveMap(Clutter):
                 correct(tracks, i, weight, cells)
 
         def judge(tracks: Any, i: int, cells: Any) -> None:
+            if tracks[i, SCORE] < unlikely and tracks[i, weight_at] > nearly:
+                # The weight is nearly `innocence`, and would stay so.
+                return
             settle(tracks, i, innocence * unexplained(tracks[i, SCORE]), cells)
 
         def remember(tracks: Any, i: int, plots: Any, j: int, clock: Any, cells: Any) -> None:
