@@ -82,3 +82,17 @@ def test_a_scan_that_cannot_be_used_changes_nothing(scan, said):
     later = Scan(60.0, np.array([[100.0, 50.0]]))
     assert_same(session.step(later, tentative=True), other.step(later, tentative=True))
     assert session.scans == other.scans
+
+
+def test_new_tracks_are_numbered_in_the_order_of_their_plots():
+    """Also where one takes the row of a track that ended with a plot in the same scan."""
+    rng, session, last = np.random.default_rng(0), ScanTracker().start(), 0
+    places = rng.uniform(0, 224, (50, 2))
+    for k in range(60):
+        seen = places[rng.random(50) < 0.93] + rng.normal(0, 1.2, 2)
+        plots = rng.permutation(np.concatenate([seen, rng.uniform(0, 224, (100, 2))]))
+        session.step(Scan(1.678 * k, plots, np.tile([1.44, 0, 1.44], (len(plots), 1))))
+        tracks = session.tracks()
+        new = tracks.plot[tracks.track_id > last]
+        assert (np.diff(new) > 0).all()
+        last = max(tracks.track_id.max(), last)
