@@ -49,7 +49,16 @@ def growing_sequence(matrices: Array, p: Array, max_length: int) -> tuple[Order,
             best, growth = orders[top], float(radius[top])
         if growth > 1 + _GAIN and orders.shape[1] >= _SHORT:
             break
-    return best, growth
+    return _turned(best), growth
+
+
+def _turned(order: Order) -> Order:
+    """The same cycle begun at another matrix: the last of its turns in alphabetical order.
+
+    All turns grow alike, so that rounding, which differs between processors, would choose.
+    """
+    turns = [np.roll(order, -k).tolist() for k in range(len(order))]
+    return np.array(max(turns, default=[]), dtype=np.intp)
 
 
 def _beam(matrices: Array, p: Array, max_length: int) -> Iterator[tuple[Order, Array]]:

@@ -13,6 +13,7 @@ from fuzzytrack.gains.certificate import (
     polygon_in_gains,
 )
 from fuzzytrack.gains.elapsed_times import ElapsedTimes
+from fuzzytrack.gains.growing_sequence import growing_sequence
 from fuzzytrack.gains.period import resampled_gains
 from fuzzytrack.gains.polygons import convex_hull
 
@@ -287,3 +288,11 @@ def test_pairs_of_plots_in_quick_succession():
     assert found.verdict == "refuted"
     assert sorted(found.elapsed) == [0.02, 0.98]
     assert found.growth**2 == pytest.approx(3.95, abs=0.01)
+
+
+def test_a_cycle_begins_at_the_same_matrix_whatever_the_rounding():
+    shears = np.array([[[1.0, 1.0], [0.0, 1.0]], [[1.0, 0.0], [1.0, 1.0]]])
+    for order in ([0, 1], [1, 0]):
+        cycle, growth = growing_sequence(shears[order], np.eye(2), 2)
+        assert cycle.tolist() == [1, 0]
+        assert growth == pytest.approx((1 + 5**0.5) / 2)
