@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Protocol
 
@@ -27,6 +28,9 @@ FEED = "the feed"
 _HELD, _TRIED = 4_000, 200
 # Part of the period of the scans after which a scan is whole if nothing comes.
 _PAUSE = 0.05
+# So many faulty rows are left out while the first items are looked at; more are no accident.
+_FAULTY = 20
+_ROW = re.compile(rf"{FEED}: row (\d+)\b")
 
 
 class _Tables(Protocol):
@@ -185,21 +189,30 @@ class ScanFeed:
 
     def _started(self, *, last: bool) -> bytes:
         """Begin with the items so far, if that is possible; it must be with the last of them."""
-        try:
-            tables: Any = (
-                AsterixDatagrams(FEED, self._head)
-                if self._datagrams
-                else line_tables(FEED, self._head, self.reading.form)
-            )
-            if tables is None:
-                if last:
-                    raise no_rows(FEED)
-                return b""
-            plots = ScanPlots.of(tables, self.reading, **self._how)
-        except DataError:
-            if not last:
-                return b""
-            raise
+        head = list(self._head)
+        faults: list[DataError] = []
+        while True:
+            try:
+                found = self._recognized(head)
+                break
+            except DataError as error:
+                row = _row_of(error)
+                if len(faults) < _FAULTY and not self._datagrams and row is not None:
+                    # Row 1 may be the one that names the columns.
+                    faults.append(error)
+                    head[row - 1] = "\n"
+                elif last:
+                    raise (faults or [error])[0] from None
+                else:
+                    return b""
+        if found is None:
+            if last:
+                raise (faults or [no_rows(FEED)])[0]
+            return b""
+        tables, plots = found
+        self._head = head
+        for fault in faults:
+            self.faults.add("faulty", f"{fault}; left out")
         self._tables = tables
         self._table = ScanTable.of(plots.files.decoder, "", self._columns)
         self.stream = ScanStream(plots, self._scanner, tentative=self._tentative)
@@ -208,6 +221,15 @@ class ScanFeed:
         skip = 0 if self._datagrams else tables.begins
         held, self._head = self._head[skip:], []
         return self._answers(self._rows(held, skip + 1))
+
+    def _recognized(self, head: Sequence[Any]) -> tuple[Any, ScanPlots] | None:
+        """What reads the items and how they become scans; None if there is no row yet."""
+        tables: Any = (
+            AsterixDatagrams(FEED, head)
+            if self._datagrams
+            else line_tables(FEED, head, self.reading.form)
+        )
+        return None if tables is None else (tables, ScanPlots.of(tables, self.reading, **self._how))
 
     # ---------------------------------------------------------------- all items
 
@@ -262,6 +284,13 @@ class ScanFeed:
                     else csv_text(values, table.names, self._quotes)
                 )
         return "".join(found).encode()
+
+
+def _row_of(error: DataError) -> int | None:
+    """Row of the feed, after the first, that an error is about."""
+    found = _ROW.search(str(error))
+    row = int(found[1]) if found else 0
+    return row if row > 1 else None
 
 
 def _check(reading: Reading, how: dict[str, Any]) -> None:

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 import tracemalloc
 
 import numpy as np
@@ -127,6 +128,28 @@ def test_faulty_lines_are_left_out_and_told():
     assert feed.sentences() == ("3 faulty lines, left out",)
     assert "is not UTF-8" in told[0]
     assert feed.totals.scans == 20
+
+
+def test_faulty_lines_before_the_scans_are_known_are_left_out_and_told():
+    columns, told = harbor(), []
+    del columns["scan"]
+    clean = lines_of(columns)
+    lines = [*clean[:10], "1.5,7\n", *clean[10:20], "3.0,abc,1\n", *clean[20:]]
+    found, feed = answers(lines, (40,), tell=told.append)
+    # The last column is the row of the plot, which the faulty lines move.
+    one, other = (
+        [line.rpartition(",")[0] for line in text.splitlines()]
+        for text in (found, answers(clean, (40,))[0])
+    )
+    assert one == other
+    assert feed.sentences() == ("2 faulty lines, left out",)
+    assert re.search(r"row 11: .*; left out", told[0])
+
+
+def test_a_feed_of_faulty_lines_is_an_error():
+    lines = ["t,x,y\n", *(f"{k},a,b\n" for k in range(30))]
+    with pytest.raises(DataError, match="the feed: row"):
+        answers(lines, how={"period": 1.0})
 
 
 def test_a_lateness():
