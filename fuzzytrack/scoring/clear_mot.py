@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fuzzytrack.scoring.correspondences import Correspondences
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["ClearMot", "clear_mot"]
 
@@ -43,12 +43,12 @@ class ClearMot:
     matches: int
 
 
-def clear_mot(scene: Scene, found: Correspondences) -> ClearMot:
+def clear_mot(scene: ScoredScene, found: Correspondences) -> ClearMot:
     """Accuracy and precision of multiple object tracking.
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     found : Correspondences
 
     Returns

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["ClosePairs"]
 
@@ -26,7 +26,7 @@ class ClosePairs:
     Attributes
     ----------
     true_row, track_row : ndarray of int, shape (n_pairs,)
-        Rows of `Scene.truth` and `Scene.tracks`.
+        Rows of `ScoredScene.truth` and `ScoredScene.tracks`.
     distance : ndarray, shape (n_pairs,)
         Between the two (m).
     instant : ndarray of int, shape (n_pairs,)
@@ -46,7 +46,7 @@ class ClosePairs:
         return len(self.distance)
 
     @classmethod
-    def of(cls, scene: Scene, reach: float) -> ClosePairs:
+    def of(cls, scene: ScoredScene, reach: float) -> ClosePairs:
         """Find the pairs whose distance is at most a reach (m)."""
         n_true, n_tracks = scene.n_true, scene.n_tracks
         first = np.concatenate([[0], np.cumsum(n_true)])

@@ -11,7 +11,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
 from fuzzytrack.scoring.assignment import best_assignment
 from fuzzytrack.scoring.close_pairs import ClosePairs
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["Correspondences"]
 
@@ -40,12 +40,12 @@ class Correspondences:
         return summary(self, "reach", pairs=len(self.pairs))
 
     @classmethod
-    def of(cls, scene: Scene, pairs: ClosePairs, reach: float) -> Correspondences:
+    def of(cls, scene: ScoredScene, pairs: ClosePairs, reach: float) -> Correspondences:
         """Find them instant by instant.
 
         Parameters
         ----------
-        scene : Scene
+        scene : ScoredScene
         pairs : ClosePairs
             Must go as far as `reach`.
         reach : float
@@ -81,7 +81,7 @@ class Correspondences:
             return cls(reach, near.where(np.empty(0, np.int64)), np.empty(0, np.bool_))
         return cls(reach, near.where(np.concatenate(chosen)), np.concatenate(switched))
 
-    def gaps(self, scene: Scene) -> tuple[Integers, Integers]:
+    def gaps(self, scene: ScoredScene) -> tuple[Integers, Integers]:
         """How many times each true object lost its track and got one again, and pairs of each.
 
         Returns

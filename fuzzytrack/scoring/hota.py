@@ -11,7 +11,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
 from fuzzytrack.scoring.assignment import best_assignment
 from fuzzytrack.scoring.close_pairs import ClosePairs
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["THRESHOLDS", "Hota", "hota"]
 
@@ -43,7 +43,7 @@ class Hota:
         return summary(self, "hota", "det_a", "ass_a", "loc_a")
 
 
-def hota(scene: Scene, pairs: ClosePairs, cutoff: float) -> Hota:
+def hota(scene: ScoredScene, pairs: ClosePairs, cutoff: float) -> Hota:
     """Higher order tracking accuracy with the similarity 1 - distance/cut-off.
 
     At a threshold, TP pairs are at least so similar, FN true positions and FP positions of tracks
@@ -54,7 +54,7 @@ def hota(scene: Scene, pairs: ClosePairs, cutoff: float) -> Hota:
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     pairs : ClosePairs
         Must reach as far as the cut-off.
     cutoff : float

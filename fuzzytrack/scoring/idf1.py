@@ -9,7 +9,7 @@ import numpy as np
 
 from fuzzytrack.scoring.assignment import best_assignment
 from fuzzytrack.scoring.close_pairs import ClosePairs
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["Idf1", "idf1"]
 
@@ -31,7 +31,7 @@ class Idf1:
     idr: float
 
 
-def idf1(scene: Scene, pairs: ClosePairs, reach: float) -> Idf1:
+def idf1(scene: ScoredScene, pairs: ClosePairs, reach: float) -> Idf1:
     """Identification precision, recall and F1.
 
     One track at most is given to each true object for all time, so that the number N of instants at
@@ -40,7 +40,7 @@ def idf1(scene: Scene, pairs: ClosePairs, reach: float) -> Idf1:
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     pairs : ClosePairs
         Must go as far as `reach`.
     reach : float

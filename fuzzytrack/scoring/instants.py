@@ -11,7 +11,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.scoring.interpolation import at_instants, usual_interval
 from fuzzytrack.scoring.positions import Positions
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["Timing", "added_at_ends", "make_scene"]
 
@@ -68,7 +68,7 @@ class Timing:
         return max((gap for gap in usual if not math.isnan(gap)), default=0.0)
 
 
-def make_scene(tracks: Positions, truth: Positions, timing: Timing) -> Scene:
+def make_scene(tracks: Positions, truth: Positions, timing: Timing) -> ScoredScene:
     """Tracks and truth at common instants.
 
     Parameters
@@ -79,7 +79,7 @@ def make_scene(tracks: Positions, truth: Positions, timing: Timing) -> Scene:
 
     Returns
     -------
-    Scene
+    ScoredScene
         Its instants are within the times of the truth: what is there before and after is not known.
 
     Raises
@@ -101,7 +101,7 @@ def make_scene(tracks: Positions, truth: Positions, timing: Timing) -> Scene:
     seen = tracks.where((tracks.time >= instants[0]) & (tracks.time <= instants[-1]))
     shared = bool(np.isin(seen.time, instants).all())
     own = (0.0, interval, 0.0) if shared else (_GAP * interval, interval, interval / 2)
-    return Scene(
+    return ScoredScene(
         instants,
         at_instants(there, instants, timing.truth_gap(tracks, truth), interval),
         at_instants(tracks, instants, *own),
@@ -147,7 +147,7 @@ def _instants(tracks: Positions, truth: Positions, timing: Timing) -> tuple[Arra
     return grid, interval if interval > 0 else step
 
 
-def added_at_ends(scene: Scene, tracks: Positions) -> int:
+def added_at_ends(scene: ScoredScene, tracks: Positions) -> int:
     """Instants of a scene before the first row of any track and after the last one."""
     if not len(tracks):
         return len(scene.time)

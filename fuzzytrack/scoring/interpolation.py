@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.scoring.positions import Positions
-from fuzzytrack.scoring.scene import ObjectRows
+from fuzzytrack.scoring.scored_scene import ObjectRows
 
 __all__ = ["at_instants", "usual_interval"]
 

@@ -16,7 +16,7 @@ from fuzzytrack.scoring.hota import hota
 from fuzzytrack.scoring.idf1 import idf1
 from fuzzytrack.scoring.ospa import SetAssignment, ospa
 from fuzzytrack.scoring.ospa2 import ospa2
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 from fuzzytrack.scoring.siap import nearest_objects, siap
 from fuzzytrack.scoring.track_life import track_life
 
@@ -136,12 +136,12 @@ class Settings:
         return max(self.cutoff, self.within, self.match)
 
 
-def evaluate(scene: Scene, settings: Settings) -> tuple[dict[str, float], dict[str, Array]]:
+def evaluate(scene: ScoredScene, settings: Settings) -> tuple[dict[str, float], dict[str, Array]]:
     """Every metric of a scene, and what is shown of it over time.
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     settings : Settings
 
     Returns
@@ -175,7 +175,7 @@ def evaluate(scene: Scene, settings: Settings) -> tuple[dict[str, float], dict[s
     return {name: float(values[name]) for name in METRICS}, curves
 
 
-def _sets(scene: Scene, pairs: ClosePairs, settings: Settings) -> dict[str, Array]:
+def _sets(scene: ScoredScene, pairs: ClosePairs, settings: Settings) -> dict[str, Array]:
     """Distances between sets, and their parts, over time."""
     found: dict[str, Array] = {}
     assigned = SetAssignment.of(scene, pairs, settings.cutoff, settings.order)
@@ -187,7 +187,7 @@ def _sets(scene: Scene, pairs: ClosePairs, settings: Settings) -> dict[str, Arra
     return found
 
 
-def of_kind(scene: Scene, kind: int) -> Scene:
+def of_kind(scene: ScoredScene, kind: int) -> ScoredScene:
     """The scene with the tracks of one kind only, by its number."""
     assert scene.tracks.kind is not None
     return replace(scene, tracks=scene.tracks.where(scene.tracks.kind == kind))

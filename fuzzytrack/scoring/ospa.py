@@ -11,7 +11,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
 from fuzzytrack.scoring.assignment import best_assignment
 from fuzzytrack.scoring.close_pairs import ClosePairs
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["Ospa", "SetAssignment", "ospa"]
 
@@ -50,7 +50,9 @@ class SetAssignment:
         return summary(self, "cutoff", "order", "n_assigned")
 
     @classmethod
-    def of(cls, scene: Scene, pairs: ClosePairs, cutoff: float, order: float) -> SetAssignment:
+    def of(
+        cls, scene: ScoredScene, pairs: ClosePairs, cutoff: float, order: float
+    ) -> SetAssignment:
         """Assign tracks to true objects; `pairs` must reach as far as the cut-off."""
         power = pairs.distance**order
         gain = cutoff**order - power

@@ -9,7 +9,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.scoring.assignment import best_assignment
 from fuzzytrack.scoring.close_pairs import ClosePairs
 from fuzzytrack.scoring.ospa import Ospa
-from fuzzytrack.scoring.scene import ObjectRows, Scene
+from fuzzytrack.scoring.scored_scene import ObjectRows, ScoredScene
 
 __all__ = ["ospa2"]
 
@@ -19,17 +19,17 @@ Integers = NDArray[np.int64]
 _CELLS = 4_000_000
 
 
-def ospa2(scene: Scene, pairs: ClosePairs, cutoff: float, order: float, window: int) -> Ospa:
+def ospa2(scene: ScoredScene, pairs: ClosePairs, cutoff: float, order: float, window: int) -> Ospa:
     """OSPA of tracks: a switch of identity costs as long as it is in the window.
 
     The points of OSPA are the tracks of the last instants. Two tracks f and g are as far from each
     other as they are on average over the instants T at which either exists:
 
-    d(f, g)ᵖ = (1/|T|) Σ over T of min(|f(t) - g(t)|, c)ᵖ, or cᵖ where only one of them exists.
+    ``d(f, g)ᵖ = (1/|T|) Σ min(|f(t) - g(t)|, c)ᵖ`` over T, with cᵖ where only one of them exists.
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     pairs : ClosePairs
         Must reach as far as the cut-off.
     cutoff, order : float
@@ -94,7 +94,7 @@ def _in_windows(rows: ObjectRows, count: int, window: int) -> tuple[Integers, In
 
 
 def _together(
-    scene: Scene,
+    scene: ScoredScene,
     true_key: Integers,
     track_key: Integers,
     left: Integers,

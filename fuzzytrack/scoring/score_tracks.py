@@ -19,7 +19,7 @@ from fuzzytrack.scoring.close_pairs import ClosePairs
 from fuzzytrack.scoring.instants import Timing, added_at_ends, make_scene
 from fuzzytrack.scoring.metrics import Settings, evaluate, of_kind
 from fuzzytrack.scoring.positions import KINDS, Positions
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 from fuzzytrack.scoring.scores import GroupScores, Scores
 
 __all__ = ["Lag", "Lists", "score", "score_positions"]
@@ -274,7 +274,7 @@ def _scored(
 _FALSE = ("false_time", "false_per_minute", "moving_false", "static_false")
 
 
-def _listed(scene: Scene, cutoff: float) -> Scene:
+def _listed(scene: ScoredScene, cutoff: float) -> ScoredScene:
     """The scene without tracks of objects that the truth does not list."""
     assert scene.tracks.kind is not None
     kept = scene.tracks.kind == _MOVING

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.scoring.close_pairs import ClosePairs
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["Siap", "nearest_objects", "siap"]
 
@@ -57,12 +57,12 @@ def nearest_objects(pairs: ClosePairs, reach: float) -> ClosePairs:
     return near.where(np.sort(order[first]))
 
 
-def siap(scene: Scene, found: ClosePairs) -> Siap:
+def siap(scene: ScoredScene, found: ClosePairs) -> Siap:
     """Completeness, ambiguity, spuriousness, accuracy and continuity.
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     found : ClosePairs
         To which true object each track belongs, from `nearest_objects`.
 
@@ -103,14 +103,14 @@ def siap(scene: Scene, found: ClosePairs) -> Siap:
     )
 
 
-def _velocity_errors(scene: Scene, found: ClosePairs) -> NDArray[np.float64]:
+def _velocity_errors(scene: ScoredScene, found: ClosePairs) -> NDArray[np.float64]:
     """Sizes of the errors of velocity, where both velocities are known."""
     error = scene.tracks.velocity[found.track_row] - scene.truth.velocity[found.true_row]
     sizes = np.sqrt((error**2).sum(axis=1))
     return np.asarray(sizes[~np.isnan(sizes)])
 
 
-def _lives(scene: Scene) -> float:
+def _lives(scene: ScoredScene) -> float:
     """Sum over the true objects of the time from the first instant to the last one (s)."""
     order = np.argsort(scene.truth.id, kind="stable")
     time, id = scene.time[scene.truth.instant[order]], scene.truth.id[order]
@@ -119,7 +119,7 @@ def _lives(scene: Scene) -> float:
     return float((time[last] - time[first]).sum()) if len(id) else 0.0
 
 
-def _continuity(scene: Scene, found: ClosePairs) -> tuple[int, float, float]:
+def _continuity(scene: ScoredScene, found: ClosePairs) -> tuple[int, float, float]:
     """Changes of tracks, time tracked (s), and longest times of one track (s), of all objects."""
     id, track = scene.truth.id[found.true_row], scene.tracks.id[found.track_row]
     if not len(found):

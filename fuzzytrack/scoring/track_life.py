@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.scoring.correspondences import Correspondences
 from fuzzytrack.scoring.positions import KINDS
-from fuzzytrack.scoring.scene import Scene
+from fuzzytrack.scoring.scored_scene import ScoredScene
 
 __all__ = ["TrackLife", "track_life"]
 
@@ -58,14 +58,14 @@ class TrackLife:
     redundant_per_minute: float
 
 
-def track_life(scene: Scene, found: Correspondences, near: NDArray[np.bool_]) -> TrackLife:
+def track_life(scene: ScoredScene, found: Correspondences, near: NDArray[np.bool_]) -> TrackLife:
     """Share tracked, time to the first match, breaks, switches and false tracks.
 
     A row of an instant lasts until the next one.
 
     Parameters
     ----------
-    scene : Scene
+    scene : ScoredScene
     found : Correspondences
         Which track belongs to which true object.
     near : ndarray of bool, shape (n_track_rows,)
@@ -116,7 +116,7 @@ def _ratio(part: float, whole: float) -> float:
     return float(part / whole) if whole else math.nan
 
 
-def _first_matches(scene: Scene, found: Correspondences) -> tuple[Array, int]:
+def _first_matches(scene: ScoredScene, found: Correspondences) -> tuple[Array, int]:
     """Time to the first track of each true object that is there, and how many never have one."""
     there = np.unique(scene.truth.id)
     count = len(scene.truth.names)

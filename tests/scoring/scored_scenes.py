@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from fuzzytrack.scoring.close_pairs import ClosePairs
 from fuzzytrack.scoring.positions import KINDS, Positions
-from fuzzytrack.scoring.scene import ObjectRows, Scene
+from fuzzytrack.scoring.scored_scene import ObjectRows, ScoredScene
 
 
 def rows(entries, kind=None, axes=2):
@@ -23,7 +23,7 @@ def scene(truth, tracks, instants=None, kind=None, step=1.0):
     """A scene of (instant, id, x, y), with instants a second apart."""
     last = max([each[0] for each in (*truth, *tracks)], default=-1) + 1
     count = last if instants is None else instants
-    return Scene(step * np.arange(count, dtype=float), rows(truth), rows(tracks, kind))
+    return ScoredScene(step * np.arange(count, dtype=float), rows(truth), rows(tracks, kind))
 
 
 def one_instant(truth, tracks):
@@ -42,7 +42,7 @@ def pairs(of, reach=1e9):
 
 def swapped(of):
     """A scene in which truth and tracks have changed places."""
-    return Scene(of.time, of.tracks, of.truth)
+    return ScoredScene(of.time, of.tracks, of.truth)
 
 
 def random_scene(seed, objects=5, tracks=7, instants=20, noise=3.0, spread=30.0):

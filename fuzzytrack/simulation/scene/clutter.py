@@ -15,7 +15,7 @@ from fuzzytrack.simulation.scene.region import Region
 from fuzzytrack.simulation.scene.settings import Settings
 from fuzzytrack.simulation.scene.streams import Streams
 
-__all__ = ["MOST_PLOTS", "Clutter", "ClutterPlots", "View", "refuse_too_many"]
+__all__ = ["MOST_PLOTS", "Clutter", "View", "refuse_too_many"]
 
 #: Most plots of a kind of clutter, so that a scene cannot ask for more memory than a computer has.
 MOST_PLOTS = 50_000_000

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.reprs import summary
 
-__all__ = ["ObjectRows", "Scene"]
+__all__ = ["ObjectRows", "ScoredScene"]
 
 Integers = NDArray[np.int64]
 
@@ -66,7 +66,7 @@ class ObjectRows:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class ScoredScene:
     """True objects and tracks at common instants.
 
     Attributes
