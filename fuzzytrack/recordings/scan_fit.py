@@ -205,9 +205,13 @@ def _shown(value: float) -> str:
 
 
 def _of_sensor(sensor: Sensor, ranges: Array) -> Array:
-    """Standard deviations along and across the line of sight (m), shape (n, 2)."""
+    """Standard deviations along and across the line of sight (m), shape (n, 2).
+
+    Ranges are NaN where the position of the radar is not known, as in :class:`Sensor`.
+    """
     along = np.full(len(ranges), math.hypot(sensor.range_noise, sensor.extra_noise))
     across = np.hypot(sensor.bearing_noise * ranges, sensor.extra_noise)
+    across = np.where(np.isnan(ranges), along, across)
     return np.stack([along, across], axis=1)
 
 

@@ -237,4 +237,4 @@ def test_plots_of_aircraft_are_noted(run, csv):
     assert "use config air (at most 350 m/s)" in result.stderr
     assert "note: no track was confirmed in 20 scans" in result.stderr
     told = json.loads(run("scan", csv("\n".join(lines) + "\n"), "--json").stdout)["notes"]
-    assert len(told) == 2
+    assert len(told) == 3

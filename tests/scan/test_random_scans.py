@@ -9,11 +9,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import fuzz_scans
 
 
-@pytest.mark.untraced
-def test_fuzzed_scans_are_tracked_or_refused(monkeypatch):
-    # A process of many tests is larger, and under their load slower.
+@pytest.fixture(autouse=True)
+def limits_of_a_process_of_many_tests(monkeypatch):
+    """It is larger than one of the fuzzer, and under its load slower."""
     monkeypatch.setattr(fuzz_scans, "SECONDS", 600.0)
     monkeypatch.setattr(fuzz_scans, "MEBIBYTES", 1e6)
+
+
+@pytest.mark.untraced
+def test_fuzzed_scans_are_tracked_or_refused():
     report = fuzz_scans.run((1, 0, 30, 2000))
     assert report.failures == []
     # A fuzzer whose scans all fail, or all pass, tests nothing.

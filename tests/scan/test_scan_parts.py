@@ -67,7 +67,8 @@ def test_a_track_in_a_crowd_looks_at_few_plots():
     arrange, near = part.kernels(SETTING)
     arrange(plots, n, None, order, integers, numbers)
     seen = set()
-    for _ in range(200):
+    for track in range(200):
+        found[0] = track
         count = near(0.0, 0.0, 1.0, plots, n, None, integers, numbers, found)
         assert 0 < count <= 4 * 64
         seen |= set(found[:count].tolist())
