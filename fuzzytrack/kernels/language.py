@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["Memory", "own_numbers", "promise_independent_turns", "use_wide_vectors"]
+__all__ = [
+    "Memory", "own_numbers", "promise_independent_turns", "read_soon", "use_wide_vectors",
+]  # fmt: skip
 
 #: What a kernel remembers from step to step: numbers that it takes and returns.
 Memory = tuple[float, ...]
@@ -48,3 +50,11 @@ def own_numbers(count: int) -> Any:
         In compiled code, a pointer to numbers, which the compiler keeps in registers.
     """
     return [0.0] * count
+
+
+def read_soon(table: Any, row: int, column: int) -> None:
+    """Let the processor fetch the memory around a number that will be read soon.
+
+    A loop over rows far apart waits for memory at each of them where a table is larger than the
+    caches. The row may be one beyond the last.
+    """

@@ -199,6 +199,27 @@ def _promise_independent_turns(typing_context: Any) -> Any:
     return types.void(), generate
 
 
+def _read_soon(typing_context: Any, table: Any, row: Any, column: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array = context.make_array(table)(context, builder, arguments[0])
+        strides = cgutils.unpack_tuple(builder, array.strides)
+        offset = builder.add(
+            builder.mul(arguments[1], strides[0]), builder.mul(arguments[2], strides[1])
+        )
+        byte, whole = ir.IntType(8).as_pointer(), ir.IntType(32)
+        place = builder.gep(builder.bitcast(array.data, byte), [offset])
+        fetch = cgutils.get_or_insert_function(
+            builder.module,
+            ir.FunctionType(ir.VoidType(), [byte, whole, whole, whole]),
+            "llvm.prefetch.p0",
+        )
+        # To be read, kept in all caches, data.
+        builder.call(fetch, [place, whole(0), whole(3), whole(1)])
+        return context.get_dummy_value()
+
+    return types.void(table, types.intp, types.intp), generate
+
+
 #: Instructions that may read or write memory.
 _TOUCHING = (ir.LoadInstr, ir.StoreInstr, ir.CallInstr)
 
@@ -255,6 +276,7 @@ def _next_blocks(block: Any) -> list[Any]:
 _WORDS: dict[Callable[..., Any], Any] = {
     language.use_wide_vectors: intrinsic(_use_wide_vectors),
     language.promise_independent_turns: intrinsic(_promise_independent_turns),
+    language.read_soon: intrinsic(_read_soon),
 }
 
 

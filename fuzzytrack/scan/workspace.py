@@ -27,6 +27,7 @@ from fuzzytrack.scan.report_columns import (
     REPORT_WORDS,
 )
 from fuzzytrack.scan.scan_parts import ScanParts
+from fuzzytrack.scan.stages.lookahead import LINE
 from fuzzytrack.scan.track_reports import TrackReports
 
 __all__ = ["Workspace", "new_workspace", "reported", "with_edges", "with_room"]
@@ -90,8 +91,6 @@ class Workspace(NamedTuple):
 #: Arrays of which the content lives from scan to scan; the others are scratch.
 LASTING = ("tracks", "clock", "counts", "cells", "kept")
 _ROOM, _PLOTS, _EDGES = 64, 64, 256
-#: Numbers in a line of the cache.
-_LINE = 8
 
 
 def new_workspace(tracker: ScanParts) -> Workspace:
@@ -109,8 +108,8 @@ def new_workspace(tracker: ScanParts) -> Workspace:
 
 def _aligned(rows: int, width: int, flat: Array | None = None) -> Array:
     """Numbers of which the first begins a line of the cache; in a flat array if one is given."""
-    flat = np.empty(rows * width + _LINE) if flat is None else flat
-    begin = -flat.ctypes.data // flat.itemsize % _LINE
+    flat = np.empty(rows * width + LINE) if flat is None else flat
+    begin = -flat.ctypes.data // flat.itemsize % LINE
     return flat[begin : begin + rows * width].reshape(rows, width)
 
 
@@ -124,7 +123,7 @@ def _with_rows(tracks: Array, room: int) -> Array:
         return more
     # In place where the system can move pages, so that memory is never needed twice.
     begin = (tracks.ctypes.data - flat.ctypes.data) // flat.itemsize
-    flat.resize(room * width + _LINE, refcheck=False)
+    flat.resize(room * width + LINE, refcheck=False)
     more = _aligned(room, width, flat)
     moved = flat[begin : begin + used * width].reshape(used, width)
     if moved.ctypes.data != more.ctypes.data:

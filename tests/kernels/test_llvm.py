@@ -5,7 +5,7 @@ import pytest
 from llvmlite import ir
 
 from fuzzytrack.kernels.compile import compiled, entry_point
-from fuzzytrack.kernels.language import promise_independent_turns
+from fuzzytrack.kernels.language import promise_independent_turns, read_soon
 from fuzzytrack.kernels.llvm import _branches_back, call, pointer
 
 
@@ -80,3 +80,20 @@ def test_compiled_code_calls_what_was_compiled_later(dtype):
     outer = compiled(caller)
     outer(entry_point(scaled, "vpixp", dtype).address, source, 1, dtype(0.5), target)
     assert target.tolist() == [0.0, 1.0, 1.5, 0.0]
+
+
+def test_rows_ahead_are_fetched(monkeypatch):
+    """At the place of their numbers in memory, and without harm beyond the last row."""
+    monkeypatch.setenv("FUZZYTRACK_CACHE_DIR", "off")
+
+    def total(table):
+        found = 0.0
+        for i in range(len(table)):
+            read_soon(table, i + 1000, 1)
+            found += table[i, 1]
+        return found
+
+    code, table = compiled(total), np.arange(12.0).reshape(3, 4)
+    for given in (table, np.asfortranarray(table), table[:, ::2], table[:0]):
+        assert code(given) == total(given) == given[:, 1].sum()
+    assert any("call void @llvm.prefetch" in text for text in code.inspect_llvm().values())

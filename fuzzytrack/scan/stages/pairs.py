@@ -25,8 +25,9 @@ from fuzzytrack.scan.gate.base import GateKernels
 from fuzzytrack.scan.initiation.base import InitiationKernels
 from fuzzytrack.scan.plot_columns import PLOT_TIME, PLOT_X, PLOT_Y, R11, R12, R22
 from fuzzytrack.scan.sensor import NoiseKernel
+from fuzzytrack.scan.stages.lookahead import AHEAD, fetch_row
 from fuzzytrack.scan.stages.plots import DONE
-from fuzzytrack.scan.track_columns import STATUS, TIME
+from fuzzytrack.scan.track_columns import P22, STATUS, TIME
 from fuzzytrack.scan.update.base import UpdateKernels
 
 __all__ = ["MORE_EDGES", "MOST_EDGES", "assignment_stage", "log_likelihood", "pairs_stage"]
@@ -86,6 +87,7 @@ def pairs_stage(
         some_due, own_times = counts[HAS_DUE] > 0, counts[HAS_TIMES] > 0
         end = 0
         for i in range(rows):
+            fetch_row(tracks, i + AHEAD, P22 + 1)
             first[i] = end
             plot_of[i] = -1
             if tracks[i, STATUS] == 0.0 or (some_due and due[i] == 0) or count == 0:

@@ -40,6 +40,7 @@ from fuzzytrack.scan.plot_columns import (
     STARTS,
 )
 from fuzzytrack.scan.sensor import NoiseKernel
+from fuzzytrack.scan.stages.lookahead import AHEAD, fetch_row
 
 __all__ = [
     "BAD_COVARIANCE", "BAD_POSITION", "BAD_TIME", "DONE", "NO_NOISE", "density_stage",
@@ -100,6 +101,7 @@ def plots_stage(
         if with_times and count > 0:
             latest = given[0, PLOT_TIME]
         for k in range(count):
+            fetch_row(given, work.order[min(k + AHEAD, count - 1)], PLOT_WIDTH)
             j = work.order[k]
             for column in range(PLOT_WIDTH):
                 plots[k, column] = given[j, column]

@@ -23,9 +23,10 @@ from fuzzytrack.scan.report_columns import (
     REPORT_TIME,
     REPORT_VELOCITY,
 )
+from fuzzytrack.scan.stages.lookahead import AHEAD, fetch_row
 from fuzzytrack.scan.stages.plots import DONE
 from fuzzytrack.scan.stages.tracks import CONFIRMED
-from fuzzytrack.scan.track_columns import ID, MISSES, PLOT, STATUS, TIME
+from fuzzytrack.scan.track_columns import FIXED, ID, MISSES, PLOT, STATUS, TIME
 from fuzzytrack.scan.update.base import UpdateKernels
 
 __all__ = ["report_stage"]
@@ -119,6 +120,7 @@ def report_stage(
         some_due, tentative_too = counts[HAS_DUE] > 0, counts[TENTATIVE_TOO] > 0
         n, last, in_order = 0, 0.0, True
         for i in range(counts[ROWS]):
+            fetch_row(tracks, i + AHEAD, STATUS + 1)
             status = tracks[i, STATUS]
             if status == 0.0 or (some_due and due[i] == 0):
                 continue
@@ -135,6 +137,7 @@ def report_stage(
         else:
             find_places(tracks, order, n, place, work.free, work.integers)
         for k in range(n):
+            fetch_row(tracks, order[min(k + AHEAD, n - 1)], FIXED)
             write(tracks, order[k], work, place[k], clock[SCAN_TIME])
         counts[REPORTS] = n
         return DONE

@@ -25,6 +25,7 @@ from fuzzytrack.scan.plot_columns import (
     LOG_DENSITY,
     LOG_LIKELIHOOD,
     PLOT_TIME,
+    PLOT_WIDTH,
     PLOT_X,
     PLOT_Y,
     R11,
@@ -35,9 +36,11 @@ from fuzzytrack.scan.plot_columns import (
     STRENGTH,
 )
 from fuzzytrack.scan.quality.base import QualityKernels
+from fuzzytrack.scan.stages.lookahead import AHEAD, fetch_row
 from fuzzytrack.scan.stages.pairs import log_likelihood
 from fuzzytrack.scan.stages.plots import DONE
 from fuzzytrack.scan.track_columns import (
+    FIXED,
     HITS,
     ID,
     LOOKED,
@@ -51,6 +54,8 @@ from fuzzytrack.scan.update.base import UpdateKernels
 __all__ = ["CONFIRMED", "follow_stage", "start_stage"]
 
 TENTATIVE, CONFIRMED = 1.0, 2.0
+#: Columns after the fixed ones that most tracks need: those of the kind, and the first of clutter.
+_MEMORY = 15
 
 
 def follow_stage(
@@ -104,8 +109,10 @@ def follow_stage(
         tracks, plots, clock, counts = work.tracks, work.plots, work.clock, work.counts
         cells, kept, plot_of, due = work.cells, work.kept, work.plot_of, work.due
         rows, some_due, free = counts[ROWS], counts[HAS_DUE] > 0, work.free
-        n = 0
+        n, width = 0, min(tracks.shape[1], FIXED + _MEMORY)
         for i in range(rows):
+            fetch_row(tracks, i + AHEAD, width)
+            fetch_row(plots, plot_of[min(i + AHEAD, rows - 1)], PLOT_WIDTH)
             status = tracks[i, STATUS]
             if status == 0.0:
                 free[n] = i
