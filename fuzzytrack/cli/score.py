@@ -99,6 +99,9 @@ def score(
     axes: Annotated[
         _Text, _option(_TRACKS, "COL,COL", "Columns of position, m. [default: x,y or north,east]")
     ] = None,
+    polar: Annotated[
+        _Text, _option(_TRACKS, "R,AZ", "Columns of range, m, and azimuth, degrees from north.")
+    ] = None,
     geodetic: Annotated[
         _Text, _option(_TRACKS, "LAT,LON", "Columns of latitude and longitude, in degrees.")
     ] = None,
@@ -127,6 +130,9 @@ def score(
         _Text,
         _option(_TRUTH, "COL,COL", "Columns of position. [default: as in the tracks, or x,y]"),
     ] = None,
+    truth_polar: Annotated[
+        _Text, _option(_TRUTH, "R,AZ", "Columns of range, m, and azimuth, degrees from north.")
+    ] = None,
     truth_group: Annotated[
         _Text, _option(_TRUTH, "COL", "Column of the recording. [default: --group]")
     ] = None,
@@ -146,7 +152,11 @@ def score(
         check_picture(plot, (tracks, truth))
     of_tracks = TableOptions(
         reading=Reading.of(
-            time=time, id=id, axes=_names(axes, "--axes"), geodetic=_names(geodetic, "--geodetic")
+            time=time,
+            id=id,
+            axes=_names(axes, "--axes"),
+            polar=_names(polar, "--polar"),
+            geodetic=_names(geodetic, "--geodetic"),
         ),
         group=group,
         kind=kind,
@@ -154,7 +164,12 @@ def score(
         tentative=tentative,
     )
     of_truth = TableOptions(
-        reading=Reading.of(time=truth_time, id=truth_id, axes=_names(truth_axes, "--truth-axes")),
+        reading=Reading.of(
+            time=truth_time,
+            id=truth_id,
+            axes=_names(truth_axes, "--truth-axes"),
+            polar=_names(truth_polar, "--truth-polar"),
+        ),
         group=truth_group,
     )
     with progress("scoring"):

@@ -20,6 +20,9 @@ __all__ = ["Timing", "added_at_ends", "make_scene"]
 _SHARED = 0.75
 # A longer time without a row than this multiple of the usual one is a gap.
 _GAP = 1.5
+# The same between rows of a track that have times of their own: one at the beginning of a scan, and
+# one at the end of the next scan, or a coasting one there, are up to two scans apart.
+_OWN_GAP = 2.1
 # Usual times between samples of the truth, or between rows of a track, over which the truth is
 # interpolated.
 _TRUE_GAP, _TRACK_GAP = 10.0, 3.0
@@ -100,7 +103,7 @@ def make_scene(tracks: Positions, truth: Positions, timing: Timing) -> ScoredSce
         )
     seen = tracks.where((tracks.time >= instants[0]) & (tracks.time <= instants[-1]))
     shared = bool(np.isin(seen.time, instants).all())
-    own = (0.0, interval, 0.0) if shared else (_GAP * interval, interval, interval / 2)
+    own = (0.0, interval, 0.0) if shared else (_OWN_GAP * interval, interval, interval / 2)
     return ScoredScene(
         instants,
         at_instants(there, instants, timing.truth_gap(tracks, truth), interval),

@@ -29,7 +29,9 @@ __all__ = ["TableOptions", "read_positions", "read_times", "read_truth"]
 
 # Columns of position that are taken where there are no x and y.
 _COMPASS = ("north", "east")
-_TENTATIVE = "tentative"
+_TENTATIVE, _COASTING = "tentative", "coasting"
+# The row of its plot, where a track has none.
+_NO_PLOT = "-1"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,10 +164,10 @@ def _like(
         there = {name.lower() for name in source.types}
     if all(getattr(said, name) is None for name in ("axes", "polar", "geodetic", "angle")):
         same = all(name.lower() in there for name in columns.read)
-        if same and columns.position == "cartesian":
-            said = replace(said, axes=columns.read)
-        elif same:
-            said = replace(said, geodetic=columns.read)
+        if same:
+            use = "axes" if columns.position == "cartesian" else columns.position
+            found: dict[str, Any] = {use: columns.read}
+            said = replace(said, **found)
     if said.time is None and not columns.date and columns.time.lower() in there:
         said = replace(said, time=columns.time)
     group = options.group
@@ -207,9 +209,9 @@ def _header(file: PathLike, name: str, options: TableOptions) -> _Header:
         said = options.reading.description.over(getattr(source, "description", None))
         said = _with_position(said, names)
         columns = choose_columns(names, source.file, said, getattr(source, "units", {}))
-        if columns.position not in ("cartesian", "geodetic"):
+        if columns.position == "angle":
             raise DataError(
-                f"{source.file}: holds {columns.position} positions; expected x and y, or latitude "
+                f"{source.file}: holds angles; expected x and y, range and azimuth, or latitude "
                 "and longitude"
             )
         id = columns.id or looks_like_identity(names, columns)
@@ -217,7 +219,9 @@ def _header(file: PathLike, name: str, options: TableOptions) -> _Header:
             raise DataError(
                 f"{source.file}: no column of the identity of {name}; there are {', '.join(names)}"
             )
-        others = _others(names, source.file, options, columns.read)
+        # Polar positions become x and y about the radar, so velocities are along these.
+        axes = columns.axes if columns.position == "polar" else columns.read
+        others = _others(names, source.file, options, axes)
     said = replace(said, id=id, axes=columns.read if columns.position == "cartesian" else None)
     return _Header(inputs, replace(options.reading, description=said), columns, others)
 
@@ -236,7 +240,7 @@ def _with_position(said: PlotDescription, names: tuple[str, ...]) -> PlotDescrip
 def _others(
     names: tuple[str, ...], file: str, options: TableOptions, axes: tuple[str, ...]
 ) -> dict[str, tuple[str, ...]]:
-    """Columns of group, kind, status and velocity."""
+    """Columns of group, kind, status, plot and velocity."""
     found: dict[str, tuple[str, ...]] = {}
     for use in ("group", "kind", "status"):
         said = getattr(options, use)
@@ -244,6 +248,9 @@ def _others(
             found[use] = (known(names, said, use, file),)
         elif use != "group" and use in names:
             found[use] = (use,)
+    if options.tentative and "plot" in names:
+        # Of tentative tracks the status does not say whether they coast.
+        found["plot"] = ("plot",)
     if options.velocity is not None:
         if len(options.velocity) != len(axes):
             raise DataError(
@@ -295,6 +302,10 @@ def _read(table: _Opened, name: str, *, tentative: bool) -> tuple[Positions, int
             columns["group"] = more["group"]
         if "kind" in more:
             columns["kind"] = _kinds(files.names[0], table.others["kind"][0], more["kind"])
+        if "status" in more:
+            columns["coasting"] = more["status"] == _COASTING
+        if "plot" in more:
+            columns["coasting"] = more["plot"] == _NO_PLOT
         if "status" in more and not tentative:
             kept = more["status"] != _TENTATIVE
     shown = {key: values[kept] for key, values in columns.items()}

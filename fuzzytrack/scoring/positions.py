@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,9 @@ __all__ = ["KINDS", "Positions"]
 
 #: Words for `Positions.kind`, in the order of its numbers, which are those of a scan tracker.
 KINDS = ("undecided", "moving", "static")
+
+# What a user may give, the first three in any case.
+_COLUMNS = ("time", "id", "position", "velocity", "kind", "group", "coasting")
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +39,11 @@ class Positions:
         Numbers of the words of `KINDS`.
     group : ndarray, shape (n,), optional
         Recording to which the row belongs, number or text; recordings are scored one by one.
+    coasting : ndarray of bool, shape (n,), optional
+        Whether a track has no plot in this row, but is predicted.
+    doubles : int
+        Coasting rows that were left out, since the track has a plot at the same time. A track that
+        coasts to the end of a scan may get a plot at that very time in the next one.
     """
 
     time: Array
@@ -44,6 +52,8 @@ class Positions:
     velocity: Array | None = None
     kind: NDArray[np.int64] | None = None
     group: NDArray[Any] | None = None
+    coasting: NDArray[np.bool_] | None = None
+    doubles: int = 0
 
     def __repr__(self) -> str:
         return summary(self, rows=len(self), objects=len(np.unique(self.id)))
@@ -67,14 +77,17 @@ class Positions:
         velocity: ArrayLike | None = None,
         kind: ArrayLike | None = None,
         group: ArrayLike | None = None,
+        coasting: ArrayLike | None = None,
     ) -> Positions:
         """Make them of array-likes, with checks; rows without a position are left out.
+
+        So is a coasting row of a track that has a plot at the same time.
 
         Parameters
         ----------
         name : str
             What they are, ``tracks`` or ``truth``: the argument that messages name.
-        time, id, position, velocity, kind, group : array_like
+        time, id, position, velocity, kind, group, coasting : array_like
             The attributes. Words are allowed as `kind`, and one coordinate as a flat `position`.
 
         Raises
@@ -93,7 +106,8 @@ class Positions:
                 raise ValueError(f"{name}: velocity and position have different numbers of axes")
         columns |= {"id": np.asarray(id), "group": None if group is None else np.asarray(group)}
         columns["kind"] = None if kind is None else _kinds(name, np.asarray(kind))
-        for each in ("id", "kind", "group"):
+        columns["coasting"] = None if coasting is None else np.asarray(coasting, dtype=np.bool_)
+        for each in ("id", "kind", "group", "coasting"):
             found = columns[each]
             if found is not None and found.shape != times.shape:
                 raise ValueError(
@@ -108,8 +122,7 @@ class Positions:
         every = cls(times, **columns)
         known: NDArray[np.bool_] = np.asarray(~np.isnan(every.position).any(axis=1))
         found = every if known.all() else every.where(known)
-        _check_one_place(name, found)
-        return found
+        return _one_at_a_time(name, found)
 
     @classmethod
     def of(cls, value: Any, name: str) -> Positions:
@@ -118,9 +131,9 @@ class Positions:
         Parameters
         ----------
         value : Positions, mapping, tuple, or object with such attributes
-            A mapping from ``time``, ``id``, ``position`` and maybe ``velocity``, ``kind`` and
-            ``group``; a tuple (time, id, position); or what a scan tracker reports, or its result,
-            whose tentative tracks are left out.
+            A mapping from ``time``, ``id``, ``position`` and maybe ``velocity``, ``kind``,
+            ``group`` and ``coasting``; a tuple (time, id, position); or what a scan tracker
+            reports, or its result, whose tentative tracks are left out.
         name : str
             The argument, for messages.
 
@@ -133,15 +146,22 @@ class Positions:
         """
         value = getattr(value, "reports", value)
         if isinstance(value, cls):
-            return cls.make(name, *(getattr(value, each.name) for each in fields(cls)))
+            made = cls.make(name, *(getattr(value, each) for each in _COLUMNS))
+            return replace(made, doubles=value.doubles + made.doubles)
         if isinstance(value, Mapping):
             return cls._of_mapping(value, name)
-        if isinstance(value, tuple) and 3 <= len(value) <= len(fields(cls)):
+        if isinstance(value, tuple) and 3 <= len(value) <= len(_COLUMNS):
             return cls.make(name, *value)
         if all(hasattr(value, each) for each in ("time", "track_id", "position", "status")):
             shown = value.where(np.asarray(value.status) > 0)
             return cls.make(
-                name, shown.time, shown.track_id, shown.position, shown.velocity, shown.kind
+                name,
+                shown.time,
+                shown.track_id,
+                shown.position,
+                shown.velocity,
+                shown.kind,
+                coasting=np.asarray(shown.plot) < 0,
             )
         raise TypeError(
             f"{name}: {type(value).__name__}; expected a path, a mapping of time, id and position, "
@@ -150,17 +170,16 @@ class Positions:
 
     @classmethod
     def _of_mapping(cls, value: Mapping[str, Any], name: str) -> Positions:
-        allowed = [each.name for each in fields(cls)]
-        wrong = [key for key in value if key not in allowed]
-        missing = [key for key in allowed[:3] if key not in value]
+        wrong = [key for key in value if key not in _COLUMNS]
+        missing = [key for key in _COLUMNS[:3] if key not in value]
         if wrong or missing:
             what = f"no {missing[0]!r}" if missing else f"{wrong[0]!r}, which is not known"
-            raise ValueError(f"{name}: has {what}; expected {', '.join(allowed)}")
+            raise ValueError(f"{name}: has {what}; expected {', '.join(_COLUMNS)}")
         return cls.make(name, **value)
 
     def where(self, rows: NDArray[Any]) -> Positions:
         """Only some rows, by a mask or by numbers."""
-        values: dict[str, Any] = vars(self)
+        values: dict[str, Any] = {name: getattr(self, name) for name in _COLUMNS}
         chosen: dict[str, Any] = {
             name: None if each is None else each[rows] for name, each in values.items()
         }
@@ -196,18 +215,26 @@ def _kinds(name: str, kind: NDArray[Any]) -> NDArray[np.int64]:
     return numbers
 
 
-def _check_one_place(name: str, found: Positions) -> None:
-    """Refuse an object that is at two places at one time."""
-    _, id = np.unique(found.id, return_inverse=True)
-    group = np.zeros(len(found), dtype=np.int64)
-    if found.group is not None:
-        group = np.unique(found.group, return_inverse=True)[1]
-    order = np.lexsort((found.time, id, group))
-    keys = (found.time[order], id[order], group[order])
-    same = np.logical_and.reduce([key[1:] == key[:-1] for key in keys])
-    if same.any():
-        row = order[int(np.argmax(same)) + 1]
+def _one_at_a_time(name: str, every: Positions) -> Positions:
+    """Leave out coasting rows beside a plot at the same time; refuse other doubles."""
+    keys = [np.unique(every.id, return_inverse=True)[1]]
+    if every.group is not None:
+        keys.append(np.unique(every.group, return_inverse=True)[1])
+    coasting = np.zeros(len(every), np.bool_) if every.coasting is None else every.coasting
+    # Of an object and a time, rows with a plot are first.
+    order = np.lexsort((coasting, every.time, *keys))
+    before, after = order[:-1], order[1:]
+    same = np.logical_and.reduce([key[after] == key[before] for key in (every.time, *keys)])
+    beside = same & coasting[after] & ~coasting[before]
+    if (same & ~beside).any():
+        row = after[int(np.argmax(same & ~beside))]
+        told = ", or a column status that says which row is coasting"
         raise ValueError(
-            f"{name}: {found.id[row]} has two positions at time {found.time[row]:.15g}; "
-            "expected one for each object and time"
+            f"{name}: {every.id[row]} has two positions at time {every.time[row]:.15g}; "
+            f"expected one for each object and time{told if every.coasting is None else ''}"
         )
+    if not beside.any():
+        return every
+    kept = np.ones(len(every), np.bool_)
+    kept[after[beside]] = False
+    return replace(every.where(kept), doubles=int(beside.sum()))

@@ -55,8 +55,9 @@ def score(
     tracks : path, ScanResult, TrackReports, Positions, mapping or tuple
         Tracks: a table as ``fuzzytrack scan`` writes it, or with columns of time, identity and
         position; what a scan tracker reports; a mapping of arrays ``time`` (s), ``id``,
-        ``position`` (m), shape (n, n_axes), and maybe ``velocity`` (m/s), ``kind`` and ``group``;
-        or a tuple (time, id, position).
+        ``position`` (m), shape (n, n_axes), and maybe ``velocity`` (m/s), ``kind``, ``group`` and
+        ``coasting``; or a tuple (time, id, position). A row without a plot is left out where the
+        track has a plot at the same time.
     truth : path, Positions, mapping or tuple
         True positions, in the same ways. They may be sampled at other times.
     cutoff, order : float
@@ -286,6 +287,9 @@ def _notes(
     groups: list[GroupScores], timing: Timing, tracks: Positions, truth: Positions
 ) -> tuple[str, ...]:
     notes = []
+    if tracks.doubles:
+        rows = counted(tracks.doubles, "row")
+        notes.append(f"tracks: {rows} without a plot left out, at times at which the track has one")
     for group in groups:
         where = f"{group.name}: " if group.name else ""
         if group.fitted is not None:

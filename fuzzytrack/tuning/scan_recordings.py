@@ -15,7 +15,6 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.reprs import summary
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scan_result import ScanResult
-from fuzzytrack.scan.track_reports import TrackReports
 from fuzzytrack.scoring import GroupScores, Positions, score
 
 __all__ = ["ScanRecording"]
@@ -80,8 +79,7 @@ class ScanRecording:
 
     def scores(self, result: ScanResult, lag: float | Literal["auto"] | None) -> GroupScores:
         """Scores of tracks, with a lag that is given or fitted."""
-        reports = _one_at_a_time(result.reports)
-        tracks = replace(Positions.of(reports, "tracks"), kind=None)
+        tracks = replace(Positions.of(result, "tracks"), kind=None)
         lists: Literal["all", "moving"] = "all" if self.moving_above is None else "moving"
         found = score(
             tracks,
@@ -105,14 +103,3 @@ class ScanRecording:
             found.update(np.ascontiguousarray(values).tobytes())
         found.update(f"{self.group} {self.lag} {self.moving_above}".encode())
         return found.hexdigest()[:16]
-
-
-def _one_at_a_time(reports: TrackReports) -> TrackReports:
-    """Reports with one row for each track and time.
-
-    A track that coasts to the end of a scan may get a plot at that very time in the next one.
-    """
-    order = np.lexsort((reports.plot >= 0, reports.time, reports.track_id))
-    id, time = reports.track_id[order], reports.time[order]
-    last = np.append((id[1:] != id[:-1]) | (time[1:] != time[:-1]), True)[: len(id)]
-    return reports.where(np.sort(order[last]))

@@ -42,6 +42,25 @@ def test_every_metric(run, files):
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
+def test_polar_tracks(run, files, csv):
+    lines = [
+        f"{t},1,{np.hypot(5 * t, 30)},{np.degrees(np.arctan2(5 * t, 30))}\n" for t in range(21)
+    ]
+    polar = csv("t,track_id,range,azimuth\n" + "".join(lines), "polar.csv")
+    plain = csv("t,id,x,y\n" + "".join(f"{t},1,{5 * t},30\n" for t in range(21)), "plain.csv")
+    for words in (
+        (polar, "--truth", plain, "--polar", "range,azimuth"),
+        (plain, "--truth", polar, "--truth-polar", "range,azimuth"),
+        (polar, "--truth", polar, "--polar", "range,azimuth"),
+    ):
+        result = run("score", *words)
+        assert result.exit_code == 0, result.stderr
+        assert float(cells(result.stdout, "OSPA (m)")[0]) == pytest.approx(0, abs=1e-9)
+    asked = run("score", polar, "--truth", plain)
+    assert asked.exit_code == 2
+    assert "--polar=range,azimuth takes range and azimuth" in asked.stderr
+
+
 def test_json_is_what_the_library_says(run, files):
     told = json.loads(run("score", *files, "--cutoff", 9, "--order", 1, "--json").stdout)
     found = ft.score(str(files[0]), str(files[2]), cutoff=9.0, order=1.0)

@@ -149,6 +149,20 @@ def test_one_row_of_each():
     assert (len(found.time), len(found.truth), len(found.tracks)) == (1, 1, 1)
 
 
+def test_a_track_of_a_turning_antenna_has_no_gap_between_scans():
+    # Its beam passes the target at the beginning of a scan and at the end of the next one, and a
+    # row without a plot is at the end.
+    times = [0.1, 7.9, 8.2, 15.8, 20.0, 24.1]
+    scans = np.arange(4.0, 28, 4)
+    other = path(2, scans - 2)
+    truth = positions(path(1, scans) + path(2, scans))
+    found = make_scene(positions(path(1, times) + other), truth, Timing(times=scans))
+    assert at(found.tracks, 1)[0] == [0, 1, 2, 3, 4, 5]
+    lost = [each for each in times if each not in (8.2, 15.8)]
+    found = make_scene(positions(path(1, lost) + other), truth, Timing(times=scans))
+    assert at(found.tracks, 1)[0] == [0, 4, 5]
+
+
 def test_a_lag_moves_the_truth():
     found = make_scene(positions(path(1, range(10))), positions(path(1, range(10))), Timing(lag=2))
     assert found.time.tolist() == list(range(2, 12))

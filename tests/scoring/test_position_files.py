@@ -50,6 +50,32 @@ def test_tentative_tracks_on_request(write):
     assert tracks.id.tolist() == ["1", "1", "2"]
 
 
+DOUBLES = """\
+t,track_id,x,y,status,plot
+0,1,0,0,confirmed,0
+4,1,4,0,coasting,-1
+4,1,5,0,confirmed,1
+4,2,8,8,tentative,-1
+4,2,9,9,tentative,2
+"""
+
+
+@pytest.mark.parametrize("tentative", [False, True])
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_a_coasting_row_beside_a_plot_in_a_file(write, tmp_path, suffix, tentative):
+    tracks, truth = write(DOUBLES), write("t,id,x,y\n0,a,0,0\n4,a,5,0\n", "truth.csv")
+    if suffix == ".parquet":
+        csv, parquet = map(pytest.importorskip, ("pyarrow.csv", "pyarrow.parquet"))
+        table, tracks = csv.read_csv(tracks), tmp_path / "tracks.parquet"
+        parquet.write_table(table, tracks)
+    options = TableOptions(tentative=tentative)
+    (found, there), _ = read_positions(tracks, truth, options)
+    assert found.position[:, 0].tolist() == ([0, 5, 9] if tentative else [0, 5])
+    assert found.doubles == 1 + tentative
+    (note, _) = ft.score(found, there).notes
+    assert note.endswith("without a plot left out, at times at which the track has one")
+
+
 def test_north_and_east(write):
     files = (
         write("scenario,t_s,track_id,north_m,east_m\n2,1.5,7,10,20\n4,1.5,7,30,40\n"),
@@ -131,7 +157,7 @@ def test_options_that_do_not_fit(write):
         (TableOptions(group="sea"), "`group`: no column 'sea'"),
         (TableOptions(kind="class"), "`kind`: no column 'class'"),
         (TableOptions(velocity=("vx",)), "velocity: 1 given; expected 2, one for each axis"),
-        (TableOptions(reading=Reading.of(polar=("x", "y"))), "holds polar positions; expected x"),
+        (TableOptions(reading=Reading.of(angle="x")), "holds angles; expected x and y, range"),
     ):
         with pytest.raises(DataError, match=message):
             read_positions(*files, options)

@@ -47,9 +47,10 @@ def test_of_the_reports_of_a_scan_tracker_without_tentative_tracks():
         *(np.arange(3), np.arange(3.0), np.array([1, 1, 2])),
         *(np.ones((3, 2)), np.full((3, 2), 7.0), np.ones((3, 4))),
         *(np.array([0, 1, 2], np.uint8), np.array([0, 1, 2], np.uint8)),
-        *(np.ones(3), np.zeros(3), np.arange(3)),
+        *(np.ones(3), np.zeros(3), np.array([0, 1, -1])),
     )
     found = Positions.of(reports, "tracks")
+    assert found.coasting.tolist() == [False, True]
     assert found.id.tolist() == [1, 2]
     assert found.kind.tolist() == [1, 2]
     assert found.velocity.tolist() == [[7.0, 7.0]] * 2
@@ -73,6 +74,24 @@ def test_of_the_reports_of_a_scan_tracker_without_tentative_tracks():
 def test_what_is_wrong_is_named(change, message):
     with pytest.raises(ValueError, match=message):
         Positions.of({**THREE, **change}, "tracks")
+
+
+def test_a_coasting_row_beside_a_plot_is_left_out():
+    rows = {
+        "time": [4.0, 4.0, 8.0, 8.0, 8.0],
+        "id": [1, 1, 1, 2, 1],
+        "position": [[0, 0], [1, 0], [2, 0], [9, 9], [3, 0]],
+        "group": ["a", "a", "a", "a", "b"],
+    }
+    found = Positions.of({**rows, "coasting": [True, False, True, True, True]}, "tracks")
+    assert found.position[:, 0].tolist() == [1, 2, 9, 3]
+    assert found.doubles == 1
+    assert Positions.of(found, "tracks").doubles == 1
+    for coasting in ([True, True, False, False, False], [False] * 5):
+        with pytest.raises(ValueError, match=r"1 has two positions at time 4; .* and time$"):
+            Positions.of({**rows, "coasting": coasting}, "tracks")
+    with pytest.raises(ValueError, match="or a column status that says which row is coasting"):
+        Positions.of(rows, "tracks")
 
 
 def test_something_else():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -202,7 +203,8 @@ def test_digests_tell_recordings_apart():
 def test_a_track_with_two_rows_at_a_time_is_scored():
     result = plain(ScanTracker(), RECORDINGS[0].scans)
     reports = result.reports
-    twice = type(reports).joined([reports.where(np.array([-1])), reports])
+    last = replace(reports.where(np.array([-1])), plot=np.array([-1]))
+    twice = type(reports).joined([last, reports])
     object.__setattr__(result, "reports", twice)
     assert RECORDINGS[0].metrics(result)["ospa"] >= 0.0
 
