@@ -114,10 +114,10 @@ class Node:
     kind = "a value"
 
     def __init__(self, event: Any) -> None:
-        self.line = event.start_mark.line + 1
-        self.column = event.start_mark.column + 1
-        self.start = event.start_mark.index
-        self.end = event.end_mark.index
+        self.line: int = event.start_mark.line + 1
+        self.column: int = event.start_mark.column + 1
+        self.start: int = event.start_mark.index
+        self.end: int = event.end_mark.index
         self.anchored = event.anchor is not None
         self.size = 1
         self.height = 1
@@ -146,26 +146,28 @@ class Scalar(Node):
 
 
 class Sequence(Node):
-    """A list."""
+    """A list; `flow` if it is written in brackets."""
 
-    __slots__ = ("items",)
+    __slots__ = ("flow", "items")
 
     kind = "a list"
 
     def __init__(self, event: Any) -> None:
         super().__init__(event)
+        self.flow = bool(event.flow_style)
         self.items: list[Node] = []
 
 
 class Mapping(Node):
-    """Pairs of a word and a value."""
+    """Pairs of a word and a value; `flow` if they are written in braces."""
 
-    __slots__ = ("entries",)
+    __slots__ = ("entries", "flow")
 
     kind = "a mapping"
 
     def __init__(self, event: Any) -> None:
         super().__init__(event)
+        self.flow = bool(event.flow_style)
         self.entries: dict[str, tuple[Scalar, Node]] = {}
 
 

@@ -10,7 +10,8 @@ table, look at its surface, change one cell, and look again.
 # Load a rule base that comes with fuzzytrack. The inputs are the error of a prediction and
 # its change; the outputs are the stiffness and the damping of the filter.
 import fuzzytrack as ft
-from fuzzytrack.fuzzy.saving import dumps_rulebase, set_cell
+from fuzzytrack.fuzzy.rule_edits import set_cell
+from fuzzytrack.fuzzy.saving import dumps_rulebase
 
 rules = ft.load_rulebase("stiffness-damping")
 text = dumps_rulebase(rules)

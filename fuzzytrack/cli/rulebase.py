@@ -217,7 +217,7 @@ def set_(
     ] = None,
 ) -> None:
     """Change one cell of a table, or one rule; comments stay."""
-    from fuzzytrack.fuzzy.saving import set_cell
+    from fuzzytrack.fuzzy.rule_edits import set_cell
     from fuzzytrack.io.files import whole_file
 
     where = options.pairs(cell, "--cell")

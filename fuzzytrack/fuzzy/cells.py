@@ -55,6 +55,11 @@ class CellReader:
             return _merged(c for word in words for c in self._joint(word, order))
         return self._joint(node, order)
 
+    def names(self, node: Node, order: tuple[str, ...]) -> tuple[str, ...]:
+        """Names of the sets in a word such as ``S-L@0.5``, one for each output in turn."""
+        body = self.document.text(node, "a cell").partition("@")[0]
+        return self._split(node, body, order)
+
     def _by_output(self, node: Node) -> tuple[Consequent, ...]:
         found = []
         for name, (key, value) in self.document.entries(node, "consequents").items():

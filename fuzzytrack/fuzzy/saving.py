@@ -7,7 +7,7 @@ import os
 import re
 import tempfile
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,13 +15,16 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.cells import CellReader
 from fuzzytrack.fuzzy.loading import SCHEMA_FILE, loads_rulebase
 from fuzzytrack.fuzzy.membership import FuzzySet
-from fuzzytrack.fuzzy.reader import FORMAT_VERSION, Reader
+from fuzzytrack.fuzzy.numbers import written
+from fuzzytrack.fuzzy.reader import FORMAT_VERSION
 from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.variable import Universe, Variable
-from fuzzytrack.yamltree import Document, Node, quoted
-from fuzzytrack.yamltree import Mapping as MappingNode
+from fuzzytrack.yamltree import Document, quoted
 
-__all__ = ["SCHEMA_LINE", "dumps_rulebase", "save_rulebase", "set_cell", "yaml_text"]
+__all__ = [
+    "SCHEMA_LINE", "cell_text", "consequents_text", "dumps_rulebase", "read_cell", "save_rulebase",
+    "shape_text", "word_text", "yaml_text",
+]  # fmt: skip
 
 #: First line of a file: where editors find its JSON Schema.
 SCHEMA_LINE = f"# yaml-language-server: $schema={SCHEMA_FILE}"
@@ -121,7 +124,7 @@ def _lines(rules: RuleBase) -> Iterator[str]:
     yield "rules:"
     yield from _table(rules, rules.layout) if rules.layout else _list(rules)
     if rules.scheduler:
-        pairs = ", ".join(f"{_word(key)}: {_setting(value)}" for key, value in rules.scheduler)
+        pairs = ", ".join(f"{word_text(key)}: {_setting(value)}" for key, value in rules.scheduler)
         yield ""
         yield f"scheduler: {{{pairs}}}"
 
@@ -137,45 +140,46 @@ def _prose(key: str, text: str) -> Iterator[str]:
 
 
 def _variable(variable: Variable) -> Iterator[str]:
-    yield f"  {_word(variable.name)}:"
+    yield f"  {word_text(variable.name)}:"
     for key in ("label", "unit"):
         if getattr(variable, key):
             yield f"    {key}: {yaml_text(getattr(variable, key))}"
     yield f"    universe: {_universe(variable.universe)}"
     if variable.default is not None:
-        yield f"    default: {_number(variable.default)}"
+        yield f"    default: {written(variable.default)}"
     yield "    sets:"
-    width = max(len(_word(name)) for name in variable.set_names)
+    width = max(len(word_text(name)) for name in variable.set_names)
     for fuzzy_set in variable.sets:
-        yield f"      {_word(fuzzy_set.name) + ':':<{width + 1}} {_shape(fuzzy_set)}"
+        yield f"      {word_text(fuzzy_set.name) + ':':<{width + 1}} {shape_text(fuzzy_set)}"
 
 
 def _universe(universe: Universe) -> str:
-    low, high = _number(universe.low), _number(universe.high)
+    low, high = written(universe.low), written(universe.high)
     if universe.grid == "ends":
         return f"[{low}, {high}, {universe.points}]"
     return f"{{low: {low}, high: {high}, points: {universe.points}, grid: {universe.grid}}}"
 
 
-def _shape(fuzzy_set: FuzzySet) -> str:
-    parameters = ", ".join(map(_number, fuzzy_set.parameters))
+def shape_text(fuzzy_set: FuzzySet) -> str:
+    """Write a shape with its parameters, ``{trimf: [0, 0.1, 0.3]}``."""
+    parameters = ", ".join(map(written, fuzzy_set.parameters))
     return f"{{{fuzzy_set.shape}: [{parameters}]}}"
 
 
 def _table(rules: RuleBase, layout: TableLayout) -> Iterator[str]:
     columns, rows = rules.input(layout.columns), rules.input(layout.rows)
-    yield f"  columns: {_word(layout.columns)}"
-    yield f"  rows: {_word(layout.rows)}"
-    yield f"  cells: [{', '.join(map(_word, layout.cells))}]"
+    yield f"  columns: {word_text(layout.columns)}"
+    yield f"  rows: {word_text(layout.rows)}"
+    yield f"  cells: [{', '.join(map(word_text, layout.cells))}]"
     yield "  table:"
-    cells = [_cell(rule, layout.cells, rules) for rule in rules.rules]
+    cells = [cell_text(rule, layout.cells, rules) for rule in rules.rules]
     count = len(columns.sets)
     lines = [cells[start : start + count] for start in range(0, len(cells), count)]
     widths = [
         max(len(name), *(len(line[k]) + 1 for line in lines)) + 1
         for k, name in enumerate(columns.set_names)
     ]
-    margin = max(len(_word(name)) for name in rows.set_names) + 1
+    margin = max(len(word_text(name)) for name in rows.set_names) + 1
     heads = "".join(
         f"{name:<{width}}" for name, width in zip(columns.set_names, widths, strict=True)
     )
@@ -183,42 +187,42 @@ def _table(rules: RuleBase, layout: TableLayout) -> Iterator[str]:
     for name, line in zip(rows.set_names, lines, strict=True):
         ends = [f"{cell}," for cell in line[:-1]] + [line[-1]]
         row = "".join(f"{cell:<{width}}" for cell, width in zip(ends, widths, strict=True))
-        yield f"    {_word(name) + ':':<{margin}} [{row.rstrip()}]"
+        yield f"    {word_text(name) + ':':<{margin}} [{row.rstrip()}]"
 
 
 def _list(rules: RuleBase) -> Iterator[str]:
     conditions = [
-        ", ".join(f"{_word(name)}: {_word(term)}" for name, term in rule.conditions)
+        ", ".join(f"{word_text(name)}: {word_text(term)}" for name, term in rule.conditions)
         for rule in rules.rules
     ]
     width = max(map(len, conditions)) + len("{},")
     for rule, condition in zip(rules.rules, conditions, strict=True):
         either = f"{{{condition}}},"
-        yield f"  - {{if: {either:<{width}} then: {_by_output(rule.consequents)}}}"
+        yield f"  - {{if: {either:<{width}} then: {consequents_text(rule.consequents)}}}"
 
 
 # -------------------------------------------------------------------- cells
 
 
-def _says(text: str, order: tuple[str, ...], rules: RuleBase) -> tuple[Consequent, ...]:
-    """Read a single cell."""
+def read_cell(text: str, order: tuple[str, ...], rules: RuleBase) -> tuple[Consequent, ...]:
+    """Read a single cell, its words in the order of some outputs."""
     document = Document(text, "<cell>")
     outputs = {variable.name: variable for variable in rules.outputs}
     return CellReader(document, outputs).read(document.root, order)
 
 
-def _cell(rule: Rule, order: tuple[str, ...], rules: RuleBase) -> str:
+def cell_text(rule: Rule, order: tuple[str, ...], rules: RuleBase) -> str:
     """Shortest of the three forms of a cell with the conclusions of the rule."""
     for text in (_joint(rule.consequents, order), _shares(rule.consequents, order)):
         if text is None:
             continue
         try:
-            said = _says(text, order, rules)
+            said = read_cell(text, order, rules)
         except RuleBaseError:
             continue  # a name with a hyphen, that could be split in two ways
         if set(said) == set(rule.consequents):
             return text
-    return _by_output(rule.consequents)
+    return consequents_text(rule.consequents)
 
 
 def _joint(consequents: Iterable[Consequent], order: tuple[str, ...]) -> str | None:
@@ -227,7 +231,7 @@ def _joint(consequents: Iterable[Consequent], order: tuple[str, ...]) -> str | N
     confidences = {c.confidence for c in consequents}
     if set(names) != set(order) or len(confidences) > 1:
         return None
-    return _word("-".join(names[output] for output in order) + _sure(confidences.pop()))
+    return word_text("-".join(names[output] for output in order) + _sure(confidences.pop()))
 
 
 def _shares(consequents: tuple[Consequent, ...], order: tuple[str, ...]) -> str | None:
@@ -244,35 +248,31 @@ def _shares(consequents: tuple[Consequent, ...], order: tuple[str, ...]) -> str 
     return f"[{', '.join(word for word in words if word)}]"
 
 
-def _by_output(consequents: Iterable[Consequent]) -> str:
-    """``{stiffness: [S@0.5, M@0.5], damping: L}``."""
+def consequents_text(consequents: Iterable[Consequent]) -> str:
+    """Write conclusions by output, ``{stiffness: [S@0.5, M@0.5], damping: L}``."""
     words: dict[str, list[str]] = {}
     for consequent in consequents:
-        word = _word(consequent.set_name + _sure(consequent.confidence))
+        word = word_text(consequent.set_name + _sure(consequent.confidence))
         words.setdefault(consequent.output, []).append(word)
     pairs = (
-        f"{_word(output)}: {found[0] if len(found) == 1 else '[' + ', '.join(found) + ']'}"
+        f"{word_text(output)}: {found[0] if len(found) == 1 else '[' + ', '.join(found) + ']'}"
         for output, found in words.items()
     )
     return f"{{{', '.join(pairs)}}}"
 
 
 def _sure(confidence: float) -> str:
-    return "" if confidence == 1.0 else f"@{_number(confidence)}"
+    return "" if confidence == 1.0 else f"@{written(confidence)}"
 
 
 # -------------------------------------------------------------------- scalars
 
 
-def _number(value: float) -> str:
-    return repr(float(value)).removesuffix(".0")
-
-
 def _setting(word: str) -> str:
-    return word if _PLAIN_NUMBER.fullmatch(word) else _word(word)
+    return word if _PLAIN_NUMBER.fullmatch(word) else word_text(word)
 
 
-def _word(word: str) -> str:
+def word_text(word: str) -> str:
     """Write a word of the model, in quotes where a YAML reader could misread it."""
     plain = _PLAIN_WORD.fullmatch(word) and word.casefold() not in _NOT_WORDS
     return word if plain else json.dumps(word, ensure_ascii=False)
@@ -282,91 +282,3 @@ def yaml_text(text: str) -> str:
     """Write running text in a block, in quotes where it needs them."""
     plain = _PLAIN_TEXT.fullmatch(text) and text.casefold() not in _NOT_WORDS
     return text if plain else json.dumps(text, ensure_ascii=False)
-
-
-# -------------------------------------------------------------------- changing one cell
-
-
-def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>") -> str:
-    """Change one cell of a table, or the consequents of one rule, and nothing else in the text.
-
-    Parameters
-    ----------
-    text : str
-        A rule base in YAML.
-    where : mapping
-        Input to set, e.g. ``{"dE": "ns", "E": "pl"}``: the conditions of the rule, all of them.
-    cell : str
-        The new conclusion of the rule, as it is written in a table: ``M-Z``, ``M-Z@0.5`` or
-        ``[S-L@0.5, M-L@0.5]``, the outputs in the order of the table's ``cells`` (without a table,
-        in the order in which the rule names them); or ``{stiffness: M, damping: Z}``.
-    file : str
-        Name for messages.
-
-    Returns
-    -------
-    str
-        The text; nothing outside that cell is changed.
-
-    Raises
-    ------
-    RuleBaseError
-        If the text, before or after, is no rule base, there is no such rule, or the rule shares
-        its consequents with others (``if any``, anchors).
-    """
-    mark = "\ufeff" if text.startswith("\ufeff") else ""
-    body = text.removeprefix(mark)
-    reader = Reader(Document(body, file))
-    before = reader.rulebase()
-    key = _conditions(before, where)
-    if key not in reader.rule_nodes:
-        raise RuleBaseError(
-            f"no rule has exactly the conditions {_spelled(where)}; name a set for each input "
-            "that the rule has"
-        )
-    node, shared = reader.rule_nodes[key]
-    if shared or node.anchored or _inside_anchor(reader.document, node):
-        raise reader.document.error(
-            node,
-            f"other rules share the conclusions of the rule for {_spelled(where)}; "
-            "write them out first",
-        )
-    order = before.layout.cells if before.layout else before.output_names
-    if before.layout is None and isinstance(node, MappingNode):
-        order = tuple(node.entries)
-    wanted = _says(cell, order, before)
-    if isinstance(node, MappingNode) and not cell.strip().startswith("{"):
-        cell = _by_output(wanted)
-    result = body[: node.start] + cell.strip() + body[node.end :]
-    after = loads_rulebase(result, file)
-    expected = tuple(
-        replace(rule, consequents=wanted) if frozenset(rule.conditions) == key else rule
-        for rule in before.rules
-    )
-    if after != replace(before, rules=expected):
-        raise reader.document.error(node, f"{quoted(cell)} changes more than one cell")
-    return mark + result
-
-
-def _conditions(rules: RuleBase, where: Mapping[str, str]) -> frozenset[tuple[str, str]]:
-    for name, term in where.items():
-        rules.input(name).index(term)
-    return frozenset(where.items())
-
-
-def _spelled(where: Mapping[str, str]) -> str:
-    return ", ".join(f"{name}={term}" for name, term in where.items())
-
-
-def _inside_anchor(document: Document, node: Node) -> bool:
-    """Whether a node lies in a collection that aliases repeat elsewhere."""
-    stack = [document.root]
-    while stack:
-        outer = stack.pop()
-        if outer.anchored and outer.start <= node.start < outer.end:
-            return True
-        if isinstance(outer, MappingNode):
-            stack.extend(value for _, value in outer.entries.values())
-        else:
-            stack.extend(getattr(outer, "items", ()))
-    return False

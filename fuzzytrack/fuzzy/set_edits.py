@@ -1,0 +1,599 @@
+"""Fuzzy sets changed in the text of a rule base; all else in the text stays as it is.
+
+Sets that variables share by an anchor (``sets: &seven``, ``sets: *seven``) are changed for all of
+them, and the result says so in `also`; or, with ``apart=True``, they are written out first.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.anchors import write_out
+from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.numbers import written
+from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
+from fuzzytrack.fuzzy.saving import shape_text, word_text
+from fuzzytrack.fuzzy.text_edits import EditedText, TextEdits
+from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.yamltree import Mapping, Node, Scalar, quoted
+from fuzzytrack.yamltree import Sequence as ListNode
+
+__all__ = ["add_set", "remove_set", "rename_set", "set_shape"]
+
+# Rules that a message names; of more, it says how many.
+_NAMED = 6
+
+
+def set_shape(
+    text: str,
+    variable: str,
+    set_name: str,
+    parameters: Sequence[float],
+    shape: str | None = None,
+    *,
+    apart: bool = False,
+    file: str = "<text>",
+) -> EditedText:
+    """Change the parameters of a fuzzy set, and its shape.
+
+    Parameters
+    ----------
+    text : str
+        A rule base in YAML.
+    variable, set_name : str
+        Name of an input or output, and of one of its sets.
+    parameters : sequence of float
+        In the units of the variable, in the order of `fuzzytrack.fuzzy.membership.SHAPES`. Numbers
+        that stay are left as they are written.
+    shape : str, optional
+        A key of `fuzzytrack.fuzzy.membership.SHAPES`; the shape that it has unless given.
+    apart : bool
+        Whether a set that is shared by an anchor is written out first, so that only this one is
+        changed.
+    file : str
+        Name for messages.
+
+    Returns
+    -------
+    EditedText
+        The text; `also` names other sets that share this one, and were changed with it.
+
+    Raises
+    ------
+    RuleBaseError
+        If the text, before or after, is no rule base, there is no such set, the parameters do not
+        fit the shape, or an anchor shares a single number.
+
+    Examples
+    --------
+    >>> from fuzzytrack.fuzzy.loading import rulebase_path
+    >>> from fuzzytrack.fuzzy.set_edits import set_shape
+    >>> text = rulebase_path("stiffness-damping").read_text(encoding="utf-8")
+    >>> edited = set_shape(text, "E", "ze", [-0.15, 0, 0.15])
+    >>> edited.also
+    (('dE', 'ze'),)
+    """
+    if apart:
+        text = write_out(text, variable, set_name, file)
+    edits = TextEdits(text, file)
+    owner = _variable(edits.before, variable)
+    old = owner.sets[owner.index(set_name)]
+    new = FuzzySet(set_name, shape or old.shape, tuple(parameters))
+    node = edits.sets(variable).entries[set_name][1]
+    assert isinstance(node, Mapping)  # the text has been read as a rule base
+    ((key, numbers),) = node.entries.values()
+    assert isinstance(numbers, ListNode)
+    if new.shape != old.shape:
+        edits.replace(edits.content(key), key.end, new.shape)
+    _set_numbers(edits, numbers, new.parameters)
+    return _result_of_shape(edits, node, variable, old, new)
+
+
+def add_set(
+    text: str,
+    variable: str,
+    new: FuzzySet,
+    *,
+    like: str | None = None,
+    apart: bool = False,
+    file: str = "<text>",
+) -> EditedText:
+    """Add a fuzzy set, at the place that its peak has among the others.
+
+    Parameters
+    ----------
+    text : str
+        A rule base in YAML.
+    variable : str
+        Name of an input or output.
+    new : FuzzySet
+        The set.
+    like : str, optional
+        A set of the same variable. An input of a table gets a column or row for the new set, a
+        copy of the one of `like`; the set before it, or the first one, unless given. A list of
+        rules stays as it is.
+    apart : bool
+        Whether sets that are shared by an anchor are written out first.
+    file : str
+        Name for messages.
+
+    Returns
+    -------
+    EditedText
+        The text; `also` names the sets that other variables got, which share the sets of this one.
+        A comment above a table that lists the sets of its columns is kept up to date.
+
+    Raises
+    ------
+    RuleBaseError
+        If the text, before or after, is no rule base, there is no such variable, or it has a set
+        of that name.
+    """
+    if apart:
+        text = write_out(text, variable, None, file)
+    edits = TextEdits(text, file)
+    owner = _variable(edits.before, variable)
+    if new.name in owner.set_names:
+        raise RuleBaseError(f"{variable} has a set {quoted(new.name)} already; choose another name")
+    low, high = owner.universe.low, owner.universe.high
+    index = sum(s.center(low, high) <= new.center(low, high) for s in owner.sets)
+    model = owner.set_names[max(index - 1, 0)] if like is None else like
+    owner.index(model)
+    shared = _sharing(edits, variable)
+    sets = edits.sets(variable)
+    beside = list(sets.entries.values())[max(index - 1, 0)]
+    entry = _entry(edits, new.name, beside, shape_text(new))
+    edits.insert(sets, index, entry)
+    rules = edits.before.rules
+    for name in _of_table(edits.before, shared):
+        _add_line(edits, name, new.name, index, model)
+        rules += tuple(
+            _conditioned(rule, name, new.name) for rule in rules if _has(rule, name, model)
+        )
+
+    def longer(found: tuple[FuzzySet, ...]) -> tuple[FuzzySet, ...]:
+        return (*found[:index], new, *found[index:])
+
+    expected = _with_sets(edits.before, shared, longer, rules)
+    return edits.result(
+        expected, sets, f"the set {quoted(new.name)}", _others(shared, variable, new.name)
+    )
+
+
+def remove_set(
+    text: str,
+    variable: str,
+    set_name: str,
+    *,
+    with_rules: bool = False,
+    apart: bool = False,
+    file: str = "<text>",
+) -> EditedText:
+    """Remove a fuzzy set that no rule uses.
+
+    Parameters
+    ----------
+    text : str
+        A rule base in YAML.
+    variable, set_name : str
+        Name of an input or output, and of one of its sets.
+    with_rules : bool
+        Whether the rules of a table that have the set as a condition, a column or a row, are
+        removed with it.
+    apart : bool
+        Whether sets that are shared by an anchor are written out first.
+    file : str
+        Name for messages.
+
+    Returns
+    -------
+    EditedText
+        The text, without the line of the set and a comment at its end; `also` names the sets that
+        other variables lost, which share the sets of this one.
+
+    Raises
+    ------
+    RuleBaseError
+        If the text, before or after, is no rule base, there is no such set, or rules use it, which
+        are named.
+    """
+    if apart:
+        text = write_out(text, variable, None, file)
+    edits = TextEdits(text, file)
+    owner = _variable(edits.before, variable)
+    index = owner.index(set_name)
+    shared = _sharing(edits, variable)
+    lines = _of_table(edits.before, shared) if with_rules else []
+    users = [
+        rule
+        for rule in edits.before.rules
+        if _uses(rule, shared, set_name) and not any(_has(rule, name, set_name) for name in lines)
+    ]
+    sets = edits.sets(variable)
+    if users:
+        raise edits.document.error(sets.entries[set_name][0], _in_use(variable, set_name, users))
+    edits.remove(sets, index)
+    for name in lines:
+        _remove_line(edits, name, set_name, index, set(lines))
+    rules = tuple(r for r in edits.before.rules if not any(_has(r, n, set_name) for n in lines))
+
+    def shorter(found: tuple[FuzzySet, ...]) -> tuple[FuzzySet, ...]:
+        return (*found[:index], *found[index + 1 :])
+
+    expected = _with_sets(edits.before, shared, shorter, rules)
+    return edits.result(expected, sets, "the removal", _others(shared, variable, set_name))
+
+
+def rename_set(
+    text: str,
+    variable: str,
+    old: str,
+    new: str,
+    *,
+    apart: bool = False,
+    file: str = "<text>",
+) -> EditedText:
+    """Give a fuzzy set another name, in the rules that use it as well.
+
+    Parameters
+    ----------
+    text : str
+        A rule base in YAML.
+    variable, old : str
+        Name of an input or output, and of one of its sets.
+    new : str
+        The new name: no blank, comma or ``@``.
+    apart : bool
+        Whether sets that are shared by an anchor are written out first.
+    file : str
+        Name for messages.
+
+    Returns
+    -------
+    EditedText
+        The text; `also` names the sets of other variables that were renamed with it. A comment
+        above a table that lists the sets of its columns is kept up to date.
+
+    Raises
+    ------
+    RuleBaseError
+        If the text, before or after, is no rule base, there is no such set, another set has that
+        name already, or a cell such as ``a-b`` could then be read in two ways.
+    """
+    if apart:
+        text = write_out(text, variable, None, file)
+    edits = TextEdits(text, file)
+    owner = _variable(edits.before, variable)
+    index = owner.index(old)
+    if new != old and new in owner.set_names:
+        raise RuleBaseError(f"{variable} has a set {quoted(new)} already; choose another name")
+    shared = _sharing(edits, variable)
+    sets = edits.sets(variable)
+    _rename_word(edits, sets.entries[old][0], old, new)
+    _rename_in_conditions(edits, shared, old, new)
+    _rename_in_consequents(edits, shared, old, new)
+    for name in shared:
+        _edit_heading(edits, name, lambda spans: {spans[index]: new})
+
+    def renamed(found: tuple[FuzzySet, ...]) -> tuple[FuzzySet, ...]:
+        return tuple(replace(s, name=new) if s.name == old else s for s in found)
+
+    rules = tuple(_renamed_rule(rule, shared, old, new) for rule in edits.before.rules)
+    expected = _with_sets(edits.before, shared, renamed, rules)
+    return edits.result(expected, sets, f"the name {quoted(new)}", _others(shared, variable, new))
+
+
+# -------------------------------------------------------------------- shapes
+
+
+def _set_numbers(edits: TextEdits, node: ListNode, parameters: tuple[float, ...]) -> None:
+    """Put numbers in the place of others, of which there may be more or fewer."""
+    numbers = [written(p) for p in parameters]
+    if edits.is_alias(node):
+        edits.replace(node.start, node.end, f"[{', '.join(numbers)}]")
+        return
+    for item, number in zip(node.items, numbers, strict=False):
+        assert isinstance(item, Scalar)
+        if item.anchored:
+            raise edits.document.error(
+                item, "a number that an anchor shares cannot be set by itself; write it out first"
+            )
+        if float(item.text) != float(number):
+            edits.replace(item.start, item.end, number)
+    kept, last = node.items[: len(numbers)][-1].end, node.items[-1].end
+    between = ", "
+    if not node.flow:
+        between = f"{edits.line_end}{edits.margin_at(edits.start_of(node))}- "
+        kept, last = edits.end_of_line(kept), edits.end_of_line(last)
+    if kept < last:
+        edits.replace(kept, last, "")
+    elif len(numbers) > len(node.items):
+        more = "".join(between + number for number in numbers[len(node.items) :])
+        edits.replace(kept, kept, more)
+
+
+def _result_of_shape(
+    edits: TextEdits, node: Node, variable: str, old: FuzzySet, new: FuzzySet
+) -> EditedText:
+    """The text, after a check that only this set and equal ones that share it have changed."""
+    text, after = edits.loaded()
+    shape = (new.shape, new.parameters)
+    changed = set()
+    for was, now in zip(_variables(edits.before), _variables(after), strict=True):
+        for a, b in zip(was.sets, now.sets, strict=True):
+            alike = (a.shape, a.parameters) == (old.shape, old.parameters)
+            if a != b and alike and (b.shape, b.parameters) == shape:
+                changed.add((was.name, a.name))
+    expected = edits.before
+    for name, set_name in changed | {(variable, new.name)}:
+
+        def reshaped(found: tuple[FuzzySet, ...], set_name: str = set_name) -> tuple[FuzzySet, ...]:
+            return tuple(FuzzySet(s.name, *shape) if s.name == set_name else s for s in found)
+
+        expected = _with_sets(expected, [name], reshaped, expected.rules)
+    if after != expected:
+        edits.result(expected, node, f"the shape of {quoted(new.name)}")
+    order = [(v.name, s.name) for v in _variables(after) for s in v.sets]
+    return EditedText(text, [p for p in order if p in changed and p != (variable, new.name)])
+
+
+# -------------------------------------------------------------------- columns and rows
+
+
+def _of_table(rules: RuleBase, names: Sequence[str]) -> list[str]:
+    """Those inputs that a table has, the one of its columns first."""
+    layout = rules.layout
+    return [n for n in (layout.columns, layout.rows) if n in names] if layout else []
+
+
+def _rows(edits: TextEdits) -> dict[str, tuple[Scalar, ListNode]]:
+    """Rows of the table, by the names of their sets."""
+    found = {}
+    for name, (key, row) in edits.document.entries(edits.field("rules", "table"), "table").items():
+        assert isinstance(row, ListNode)
+        found[name] = key, row
+    return found
+
+
+def _add_line(edits: TextEdits, name: str, new: str, index: int, model: str) -> None:
+    """Add a column or row of the table, as a copy of that of another set."""
+    layout = edits.before.layout
+    assert layout is not None
+    place = edits.before.input(name).index(model)
+    if name == layout.columns:
+        rows = _rows(edits).values()
+        for items in {id(row.items): row for _, row in rows}.values():
+            cell = items.items[place]
+            copy = edits.text[edits.content(cell) : cell.end]
+            edits.insert(items, index, copy)
+        width = max(_width(row.items[place]) for _, row in rows)
+
+        def inserted(spans: list[tuple[int, int]]) -> dict[tuple[int, int], str]:
+            if index == 0:
+                start = spans[0][0]
+                return {(start, start): new.ljust(width + 2)}
+            start, end = spans[index - 1]
+            return {(end, end): " " * max(0, width - (end - start)) + f"  {new}"}
+
+        _edit_heading(edits, name, inserted)
+        return
+    key, row = _rows(edits)[model]
+    table = edits.field("rules", "table")
+    assert isinstance(table, Mapping)
+    copy = edits.current(edits.content(row), row.end)
+    where = list(table.entries).index(model) + (place < index)
+    edits.insert(table, where, _entry(edits, new, (key, row), copy))
+
+
+def _width(cell: Node) -> int:
+    return cell.end - cell.start
+
+
+def _remove_line(edits: TextEdits, name: str, old: str, index: int, lines: set[str]) -> None:
+    """Remove a column or row of the table."""
+    layout = edits.before.layout
+    assert layout is not None
+    if name == layout.columns:
+        # A row that is removed as well needs no change.
+        rows = [r for n, (_, r) in _rows(edits).items() if not (n == old and layout.rows in lines)]
+        for items in {id(row.items): row for row in rows}.values():
+            edits.remove(items, index)
+
+        def shorter(spans: list[tuple[int, int]]) -> dict[tuple[int, int], str]:
+            if index == 0:
+                return {(spans[0][0], spans[1][0]): ""}
+            return {(spans[index - 1][1], spans[index][1]): ""}
+
+        _edit_heading(edits, name, shorter)
+        return
+    table = edits.field("rules", "table")
+    assert isinstance(table, Mapping)
+    edits.remove(table, list(table.entries).index(old))
+
+
+def _edit_heading(
+    edits: TextEdits,
+    name: str,
+    change: Callable[[list[tuple[int, int]]], dict[tuple[int, int], str]],
+) -> None:
+    """Change the comment above the rows of a table that lists the sets of its columns, if any.
+
+    `change` gets the first and last characters of the names.
+    """
+    layout = edits.before.layout
+    if layout is None or layout.columns != name:
+        return
+    key = edits.document.entries(edits.field("rules"), "rules")["table"][0]
+    first = next(iter(_rows(edits).values()))[0]
+    words = [re.escape(word) for word in edits.before.input(name).set_names]
+    line = re.compile(r"#[ \t]*" + r"[ \t]+".join(f"({w})" for w in words) + r"[ \t]*(?=[\r\n])")
+    found = line.search(edits.text, key.end, max(key.end, first.start))
+    if found:
+        spans = [found.span(k + 1) for k in range(len(words))]
+        for (start, end), new in change(spans).items():
+            edits.replace(start, end, new)
+
+
+def _entry(edits: TextEdits, name: str, beside: tuple[Scalar, Node], value: str) -> str:
+    """Entry of a mapping, its value in the column of that of another entry."""
+    key, other = beside
+    word = f"{word_text(name)}:"
+    if value.startswith(("\r", "\n")):
+        return word + value
+    if other.line != key.line and not edits.is_alias(other) and "\n" in value:
+        return word + edits.text[key.end : other.start].lstrip(" :") + value
+    width = other.column - key.column if other.line == key.line else 0
+    return word.ljust(max(width, len(word) + 1)) + value
+
+
+# -------------------------------------------------------------------- names
+
+
+def _rename_word(edits: TextEdits, node: Node, old: str, new: str, offset: int = 0) -> None:
+    """Put a name in the place of another, which begins `offset` characters into a word."""
+    if edits.is_alias(node):
+        return  # it is renamed where its anchor is
+    assert isinstance(node, Scalar)
+    start = edits.content(node)
+    text = node.text[:offset] + new + node.text[offset + len(old) :]
+    raw = edits.text[start : node.end]
+    quotes = raw[:1] if raw != node.text else ""
+    if quotes and raw == quotes + node.text + quotes and not re.search(r"[\"'\\]", new):
+        edits.replace(start, node.end, quotes + text + quotes)
+    else:
+        edits.replace(
+            start, node.end, json.dumps(text, ensure_ascii=False) if quotes else word_text(text)
+        )
+
+
+def _rename_in_conditions(edits: TextEdits, shared: Sequence[str], old: str, new: str) -> None:
+    layout, rules = edits.before.layout, edits.field("rules")
+    if layout is not None:
+        if layout.rows in shared:
+            _rename_word(edits, _rows(edits)[old][0], old, new)
+        return
+    assert isinstance(rules, ListNode)
+    for rule in rules.items:
+        entries = edits.document.entries(rule, "a rule")
+        conditions = entries.get("if") or entries["if any"]
+        for name, (_, word) in edits.document.entries(conditions[1], "if").items():
+            if name in shared and edits.document.text(word, "set") == old:
+                _rename_word(edits, word, old, new)
+
+
+def _rename_in_consequents(edits: TextEdits, shared: Sequence[str], old: str, new: str) -> None:
+    outputs = edits.before.output_names
+    order = edits.before.layout.cells if edits.before.layout else outputs
+    nodes = {node.start: node for node, _ in edits.reader.rule_nodes.values()}
+    for node in nodes.values():
+        for word, names in _words(edits, node, order):
+            said = edits.reader.cells.names(word, names)
+            offset = 0
+            # From the last to the first: one word may have the name twice.
+            changed = edits.document.text(word, "a cell")
+            for output, name in zip(names, said, strict=True):
+                if output in shared and name == old:
+                    changed = changed[:offset] + new + changed[offset + len(old) :]
+                    offset += len(new) + 1
+                else:
+                    offset += len(name) + 1
+            if changed != word.text:
+                _rename_word(edits, word, word.text, changed)
+
+
+def _words(
+    edits: TextEdits, node: Node, order: tuple[str, ...]
+) -> Iterator[tuple[Scalar, tuple[str, ...]]]:
+    """Words of the consequents of a rule, each with the outputs whose sets it names."""
+    if isinstance(node, Scalar):
+        yield node, order
+    elif isinstance(node, ListNode):
+        for item in node.items:
+            yield from _words(edits, item, order)
+    elif isinstance(node, Mapping):
+        for output, (_, value) in node.entries.items():
+            yield from _words(edits, value, (output,))
+
+
+# -------------------------------------------------------------------- rule bases
+
+
+def _variables(rules: RuleBase) -> tuple[Variable, ...]:
+    return (*rules.inputs, *rules.outputs)
+
+
+def _variable(rules: RuleBase, name: str) -> Variable:
+    for variable in _variables(rules):
+        if variable.name == name:
+            return variable
+    allowed = ", ".join((*rules.input_names, *rules.output_names))
+    raise RuleBaseError(f"unknown variable {quoted(name)}; one of {allowed}")
+
+
+def _sharing(edits: TextEdits, variable: str) -> list[str]:
+    """Variables that have the same sets in the text, this one included."""
+    entries = edits.sets(variable).entries
+    names = (v.name for v in _variables(edits.before))
+    return [name for name in names if edits.sets(name).entries is entries]
+
+
+def _others(shared: Sequence[str], variable: str, set_name: str) -> list[tuple[str, str]]:
+    return [(name, set_name) for name in shared if name != variable]
+
+
+def _with_sets(
+    rules: RuleBase,
+    names: Sequence[str],
+    change: Callable[[tuple[FuzzySet, ...]], tuple[FuzzySet, ...]],
+    new_rules: Iterable[Rule],
+) -> RuleBase:
+    def changed(variables: tuple[Variable, ...]) -> tuple[Variable, ...]:
+        return tuple(replace(v, sets=change(v.sets)) if v.name in names else v for v in variables)
+
+    return replace(
+        rules,
+        inputs=changed(rules.inputs),
+        outputs=changed(rules.outputs),
+        rules=tuple(new_rules),
+    )
+
+
+def _has(rule: Rule, name: str, set_name: str) -> bool:
+    """Whether a rule has a condition."""
+    return (name, set_name) in rule.conditions
+
+
+def _uses(rule: Rule, names: Sequence[str], set_name: str) -> bool:
+    """Whether a rule has a set of one of some variables as a condition or a consequent."""
+    return any(_has(rule, name, set_name) for name in names) or any(
+        c.output in names and c.set_name == set_name for c in rule.consequents
+    )
+
+
+def _conditioned(rule: Rule, name: str, set_name: str) -> Rule:
+    """The rule with another set of an input."""
+    conditions = tuple((n, set_name if n == name else term) for n, term in rule.conditions)
+    return replace(rule, conditions=conditions)
+
+
+def _renamed_rule(rule: Rule, names: Sequence[str], old: str, new: str) -> Rule:
+    return Rule(
+        tuple((n, new if n in names and term == old else term) for n, term in rule.conditions),
+        tuple(
+            replace(c, set_name=new) if c.output in names and c.set_name == old else c
+            for c in rule.consequents
+        ),
+    )
+
+
+def _in_use(variable: str, set_name: str, users: Sequence[Rule]) -> str:
+    cells = [", ".join(f"{name}={term}" for name, term in rule.conditions) for rule in users]
+    more = f"; and {len(cells) - _NAMED} more" if len(cells) > _NAMED else ""
+    return (
+        f"the set {quoted(set_name)} of {variable} is used by the rules for "
+        f"{'; '.join(cells[:_NAMED])}{more}: change these first"
+    )
