@@ -158,7 +158,7 @@ class ScanFeed:
         Raises
         ------
         DataError
-            If there was no plot, or the scans could not be recognized.
+            If no plot could be used, or the scans could not be recognized.
         """
         answers = b""
         if self.stream is None:
@@ -166,7 +166,9 @@ class ScanFeed:
                 raise no_rows(FEED)
             answers = self._started(last=True)
         assert self.stream is not None
-        return answers + self._text(self.stream.finish())
+        answers += self._text(self.stream.finish())
+        self.stream.plots.findings.check(FEED)
+        return answers
 
     def sentences(self) -> tuple[str, ...]:
         """What was wrong with the feed so far, and what was done about it, in words."""

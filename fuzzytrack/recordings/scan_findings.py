@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from fuzzytrack.errors import DataError
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.plurals import counted
 
@@ -31,6 +32,12 @@ class ScanFindings(Findings):
         Plots that came too late, and were left out.
     wraps : int
         Times that the clock has started again.
+    own_known, own_missing, own_jumps : int
+        Scans with the position of the radar; without it although they should have it; scans at
+        which it jumps.
+    doubt : str
+        Why the time of a turn that was given does not suit the plots; empty if it does. It is a
+        note, too.
     """
 
     scans: int = 0
@@ -41,8 +48,35 @@ class ScanFindings(Findings):
     fills: int = 0
     late: int = 0
     wraps: int = 0
+    own_known: int = 0
+    own_missing: int = 0
+    own_jumps: int = 0
+    doubt: str = ""
 
-    _FAULTS = ("missed", "copies", "fills", "late", "wraps")
+    _FAULTS = ("missed", "copies", "fills", "late", "wraps", "own_missing", "own_jumps")
+
+    def count(self, plots: int) -> None:
+        """Count a scan with some plots."""
+        self.scans += 1
+        self.plots += plots
+        self.empty += not plots
+
+    def check(self, file: str) -> None:
+        """Check that there was a plot at all.
+
+        Parameters
+        ----------
+        file : str
+            Name of the recording, for the message.
+
+        Raises
+        ------
+        DataError
+            If no row has a position that can be used.
+        """
+        if not self.plots:
+            found = "; ".join(self.sentences()) or "no scan has a plot"
+            raise DataError(f"{file}: no plot can be used: {found}")
 
     def sentences(self) -> tuple[str, ...]:
         """What was left out or put right, a phrase for each kind of fault."""
@@ -50,12 +84,23 @@ class ScanFindings(Findings):
             f"{counted(count, 'plot')} with {reason}, left out"
             for reason, count in self.impossible.items()
         ]
+        settled = "that of the one before was taken" if self.own_known else "it is not known"
         for count, one, several in (
             (self.missed, "row without a position left out", "rows without a position left out"),
             (self.fills, "of these with a value beyond any use", "of these with values beyond use"),
             (self.copies, "exact copy of a plot dropped", "exact copies of plots dropped"),
             (self.late, "plot came too late, left out", "plots came too late, left out"),
             (self.wraps, "time that the clock started again", "times that the clock started again"),
+            (
+                self.own_missing,
+                f"scan without the position of the radar: {settled}",
+                f"scans without the position of the radar: {settled}",
+            ),
+            (
+                self.own_jumps,
+                "jump of the position of the radar, taken as it is",
+                "jumps of the position of the radar, taken as they are",
+            ),
         ):
             if count:
                 said.append(counted(count, one, several))

@@ -34,6 +34,8 @@ _NEIGHBORS, _OF_PLOTS, _TOO_FAR = 20, 0.2, 0.75
 _WIDER, _NARROWER = 5.0, 0.05
 # Scans and plots of which a track is expected.
 _SCANS_OF_TRACK, _PLOTS_OF_TRACK = 8, 20
+# Plots of a scan that has any, below which most have one.
+_ALONE = 1.5
 
 _TENTATIVE = STATUSES.index("tentative")
 
@@ -66,15 +68,19 @@ class ScanFit:
         The configuration.
     whole : bool
         Whether scans are whole turns, whose plots can be compared with those of the next one.
+    turn : float, optional
+        Time of a turn of the antenna (s), where scans are made of it.
     """
 
-    def __init__(self, scanner: ScanTracker, *, whole: bool = True) -> None:
-        self._scanner = scanner
+    def __init__(
+        self, scanner: ScanTracker, *, whole: bool = True, turn: float | None = None
+    ) -> None:
+        self._scanner, self._turn = scanner, turn if whole else None
         greatest = getattr(scanner.initiation, "greatest_speed", 0.0)
         # Some configurations leave the way to the second plot to the gate.
         self._greatest = float(greatest) if whole else 0.0
         self._last: tuple[str, Scan] | None = None
-        self._scans = self._plots = self._seen = self._compared = 0
+        self._scans = self._empty = self._plots = self._seen = self._compared = 0
         self._confirmed = False
         self._neighbors: list[_Neighbors] = []
         self._noise: list[tuple[Array, Array]] = []
@@ -84,6 +90,7 @@ class ScanFit:
         scan = each.scan
         self._scans += 1
         self._plots += len(scan)
+        self._empty += not len(scan)
         self._confirmed |= bool((each.reports.status != _TENTATIVE).any())
         if self._scans > _SCANS or self._seen > _PLOTS:
             return
@@ -100,6 +107,10 @@ class ScanFit:
 
     def notes(self) -> Iterator[str]:
         """What a user should know, in sentences; nothing if the plots suit."""
+        wrong = self._of_turns()
+        if wrong:
+            yield wrong
+            return
         told = False
         missing = (
             not self._confirmed
@@ -116,6 +127,24 @@ class ScanFit:
             )
 
     # ---------------------------------------------------------------- sentences
+
+    def _of_turns(self) -> str:
+        """What says that no turn of the antenna takes so long, or that it takes longer."""
+        if self._turn is None or self._confirmed or self._plots < _PLOTS_OF_TRACK:
+            return ""
+        turn, right = f"{self._turn:.4g} s", "`period` is the time of one turn"
+        if self._scans < _SCANS_OF_TRACK:
+            return (
+                f"{self._plots} plots are only {counted(self._scans, 'scan')} of {turn}, too few "
+                f"for a track; {right}"
+            )
+        filled = self._scans - self._empty
+        if self._empty > filled and self._plots < _ALONE * filled:
+            return (
+                f"{self._empty} of {self._scans} scans of {turn} have no plot, and most of the "
+                f"others one; {right}: is it longer? Otherwise the radar sees hardly anything"
+            )
+        return ""
 
     def _of_distances(self) -> str:
         if not self._neighbors:

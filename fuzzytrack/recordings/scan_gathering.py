@@ -10,6 +10,7 @@ import numpy as np
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.recordings.radar_place import RadarPlace
 from fuzzytrack.recordings.scan_cut import Cutter, ScanCut
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_list import ScanList
@@ -43,6 +44,8 @@ class GatheringRules:
         Whether scans that are not later than the one before are left out; else they are an error.
     radar : tuple of float
         Position of the radar before one is found in the rows or in the list of scans (m).
+    has_own : bool
+        Whether rows have the position of the radar.
     """
 
     cut: ScanCut
@@ -51,6 +54,7 @@ class GatheringRules:
     moved: bool = False
     drop_late: bool = False
     radar: tuple[float, float] = UNKNOWN_PLACE
+    has_own: bool = False
 
 
 class ScanGathering:
@@ -78,7 +82,8 @@ class ScanGathering:
         self._cutter = Cutter(rules.cut)
         self._open: list[ScanRows] = []
         self._time = math.nan
-        self._own = rules.radar
+        told = rules.has_own or (scans is not None and scans.has_own)
+        self._radar = RadarPlace(findings, rules.radar, told=told)
         self._recent: list[str] = []
         words = scans.scans.get(group, ()) if scans is not None else ()
         self._place = {word: place for place, word in enumerate(words)}
@@ -137,52 +142,50 @@ class ScanGathering:
         yield self._scan(rows, time, place)
 
     def _scan(self, rows: ScanRows, time: float, place: int) -> Scan:
-        self._own = self._own_at(rows, place)
+        own = self._own_at(rows, time, place)
         good = np.isfinite(rows.positions.sum(axis=1))
         self._findings.missed += int(len(rows) - good.sum())
         kept = rows if good.all() else rows.take(good)
         kept = self._without_copies(kept)
         positions = kept.positions
         if self._rules.moved:
-            positions = positions + self._own
+            positions = positions + own
         self._time = time
-        self._count(len(kept))
+        self._findings.count(len(kept))
         times = None if (kept.time == time).all() else kept.time
-        return Scan(time, positions, kept.covariances, times, self._own, kept.rows)
+        return Scan(time, positions, kept.covariances, times, own, kept.rows)
 
-    def _own_at(self, rows: ScanRows, place: int) -> tuple[float, float]:
+    def _own_at(self, rows: ScanRows, time: float, place: int) -> tuple[float, float]:
         """Position of the radar in the scan: that of the list, of its middle row, or the last."""
         if self._list is not None and self._list.has_own and place >= 0:
-            x, y = self._list.own[self._group][place].tolist()
-            return self._own if math.isnan(x + y) else (x, y)
-        known = np.flatnonzero(~np.isnan(rows.own).any(axis=1))
+            return self._radar.move(self._list.own[self._group][place], time)
+        known = np.flatnonzero(np.isfinite(rows.own).all(axis=1))
         if not len(known):
-            return self._own
-        x, y = rows.own[known[len(known) // 2]].tolist()
-        return (x, y)
+            return self._radar.move(rows.own[0], time)
+        middle = int(known[len(known) // 2])
+        return self._radar.move(rows.own[middle], float(rows.time[middle]))
 
     def _without_copies(self, rows: ScanRows) -> ScanRows:
         """Without plots that equal another one of the scan in time and position."""
-        keys = np.column_stack([rows.time, rows.positions]).tolist()
-        first: dict[tuple[float, ...], int] = {}
-        for row, key in enumerate(keys):
-            first.setdefault(tuple(key), row)
-        if len(first) == len(rows):
+        keys = np.stack([rows.time, *rows.positions.T])
+        # Stable: of equal ones the first is kept.
+        order = np.lexsort(keys)
+        keys = keys[:, order]
+        copies = order[1:][(keys[:, 1:] == keys[:, :-1]).all(axis=0)]
+        if not len(copies):
             return rows
-        self._findings.copies += len(rows) - len(first)
-        return rows.take(np.array(list(first.values())))
-
-    def _count(self, plots: int) -> None:
-        self._findings.scans += 1
-        self._findings.plots += plots
-        self._findings.empty += not plots
+        self._findings.copies += len(copies)
+        kept = np.ones(len(rows), dtype=bool)
+        kept[copies] = False
+        return rows.take(kept)
 
     # ---------------------------------------------------------------- scans without a plot
 
     def _empty(self, time: float) -> Scan:
         self._time = time
-        self._count(0)
-        return Scan(time, np.empty((0, 2)), own=self._own, rows=np.empty(0, dtype=np.int64))
+        self._findings.count(0)
+        own = self._radar.place
+        return Scan(time, np.empty((0, 2)), own=own, rows=np.empty(0, dtype=np.int64))
 
     def _listed_until(self, place: int) -> Iterator[Scan]:
         """Scans of the list before a place that have no plots."""
@@ -191,8 +194,7 @@ class ScanGathering:
         for k in range(self._next, place):
             # After a scan whose last plot is later than the list says.
             if times[k] > self._time or math.isnan(self._time):
-                x, y = own[k].tolist()
-                self._own = self._own if math.isnan(x + y) else (x, y)
+                self._radar.move(own[k], float(times[k]))
                 yield self._empty(float(times[k]))
         self._next = max(self._next, place)
 

@@ -19,13 +19,15 @@ from fuzzytrack.io.plot_files import ROWS, PlotFiles, opened
 from fuzzytrack.io.readers import reader_of
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.table import is_number, no_rows
+from fuzzytrack.recordings.antenna_turn import antenna_of
 from fuzzytrack.recordings.preparation import inputs_of
+from fuzzytrack.recordings.radar_place import RadarPlace
 from fuzzytrack.recordings.scan_cut import ScanCut
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_gathering import GatheringRules, ScanGathering
 from fuzzytrack.recordings.scan_list import ScanList, own_columns
 from fuzzytrack.recordings.scan_order import CountedOn, RowOrder
-from fuzzytrack.recordings.scan_rhythm import antenna_of, recognize_scans
+from fuzzytrack.recordings.scan_rhythm import period_doubt, recognize_scans
 from fuzzytrack.recordings.scan_rows import RowColumns, ScanRows, read_rows
 from fuzzytrack.reprs import summary
 from fuzzytrack.scan.scan import UNKNOWN_PLACE, Scan
@@ -37,6 +39,8 @@ __all__ = ["ScanPlots", "scans_of"]
 _SCANS = ("scan", "scan_number", "scan_no", "scan_id", "sweep", "sweep_number", "frame")
 # Rows that show how the radar makes its scans.
 _FIRST = 5_000
+# Turns of an antenna (s), and times from scan to scan.
+_LEAST_PERIOD, _MOST_PERIOD = 0.001, 86_400
 # Sectors of a turn: the tracks in one need the plots of its neighbors on both sides.
 _LEAST_SECTORS, _MOST_SECTORS = 4, 1024
 # Rules about single tracks, which plots without identities do not have.
@@ -148,7 +152,7 @@ class ScanPlots:
             files, scan, group, own, searched=(period or sectors) is None, listed=scans
         )
         if still:
-            columns = replace(columns, own=())
+            columns = replace(columns, own=(), radar=radar)
         listed = None
         if scans is not None:
             if not columns.scan:
@@ -160,7 +164,7 @@ class ScanPlots:
         made = cls(files, columns, ScanCut(), "", listed, lateness, sectors, radar)
         _check_own(made, own)
         cut, said = made._cut(period)
-        made.findings.note(_notes(made))
+        made.findings.note([*filter(None, [made.findings.doubt]), *_notes(made)])
         return replace(made, cut=cut, said=said)
 
     # ---------------------------------------------------------------- reading
@@ -257,6 +261,10 @@ class ScanPlots:
         period = decoder.clock.period if wrap == "auto" else wrap
         return CountedOn(period, wrap == "auto", self.findings)
 
+    def radar_place(self) -> RadarPlace:
+        """What follows the position of the radar in the rows of a group."""
+        return RadarPlace(self.findings, self.radar, told=bool(self.columns.own))
+
     def gathering(self, group: str = "", *, drop_late: bool = False) -> ScanGathering:
         """What puts the rows of a group together as scans."""
         moved = self.list is not None and self.list.has_own and _is_relative(self.files.decoder)
@@ -267,6 +275,7 @@ class ScanPlots:
             moved,
             drop_late or self.lateness is not None,
             self.radar,
+            bool(self.columns.own),
         )
         return ScanGathering(rules, self.findings, self.list, group)
 
@@ -287,17 +296,22 @@ class ScanPlots:
 
     # ---------------------------------------------------------------- recognition
 
-    def _cut(self, period: float | None) -> tuple[ScanCut, str]:
-        if period is not None and self.sectors is None:
-            return ScanCut("period", float(period)), f"one every {period:.4g} s"
-        if self.columns.scan:
-            return ScanCut("column"), f"by column {self.columns.scan}"
+    def _head(self) -> ScanRows:
+        """First rows, in order of time."""
         first = replace(self, findings=ScanFindings())
         rows = next(first._parts(_FIRST, None), None)
         if rows is None:
             raise no_rows(self.files.names[0])
         head = rows.take(slice(0, _FIRST))
-        head = head.take(np.argsort(head.time, kind="stable"))
+        return head.take(np.argsort(head.time, kind="stable"))
+
+    def _cut(self, period: float | None) -> tuple[ScanCut, str]:
+        if self.columns.scan:
+            return ScanCut("column"), f"by column {self.columns.scan}"
+        head = self._head()
+        if period is not None and self.sectors is None:
+            self.findings.doubt = period_doubt(head, period)
+            return ScanCut("period", float(period)), f"one every {period:.4g} s"
         if self.sectors is not None:
             antenna = antenna_of(head, period, self.files.names[0])
             latency = 2 * antenna.period / self.sectors
@@ -344,8 +358,11 @@ def _checked(
     reading: Reading, period: float | None, lateness: float | None, scan: str | None
 ) -> Reading:
     """Reading without options that plots without identities cannot have."""
-    if period is not None and not 0 < period < math.inf:
-        raise ValueError(f"period: must be a number of seconds > 0, got {period!r}")
+    if period is not None and not _LEAST_PERIOD <= period <= _MOST_PERIOD:
+        raise ValueError(
+            f"period: must be from {_LEAST_PERIOD} to {_MOST_PERIOD} s, got {period!r}; it is the "
+            "time of a turn of the antenna"
+        )
     if lateness is not None and not 0 <= lateness < math.inf:
         raise ValueError(f"lateness: must be a number of seconds >= 0, got {lateness!r}")
     if period is not None and scan is not None:

@@ -18,6 +18,7 @@ from fuzzytrack.io.plot_files import PlotFiles
 from fuzzytrack.io.table import Kind, Table
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.reprs import summary
+from fuzzytrack.scan.scan import UNKNOWN_PLACE
 from fuzzytrack.scan.stages.plots import LARGEST
 from fuzzytrack.tasks import Progress
 
@@ -37,11 +38,14 @@ class RowColumns:
         Which scan and which recording a row belongs to; empty if no column says so.
     own : tuple of str
         Position of a moving radar, in the frame of the plots.
+    radar : tuple of float
+        Position of one that does not move (m); NaN if it is not known.
     """
 
     scan: str = ""
     group: str = ""
     own: tuple[str, ...] = ()
+    radar: tuple[float, float] = UNKNOWN_PLACE
 
     @property
     def kinds(self) -> dict[str, Kind]:
@@ -159,7 +163,7 @@ def rows_of(
         filled = (np.abs(positions) > limit).any(axis=1)
     findings.fills += int(filled.sum())
     positions[filled] = np.nan
-    own = np.full((len(piece), PLANE), np.nan)
+    own = np.tile(columns.radar, (len(piece), 1))
     named = columns.own or decoder.columns.own_ship
     if named:
         own = places_of(table.numbers, named, decoder)

@@ -9,7 +9,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from fuzzytrack.recordings.scan_rhythm import antenna_of
+from fuzzytrack.recordings.antenna_turn import antenna_of
+from fuzzytrack.recordings.radar_place import RadarPlace
 from fuzzytrack.recordings.scan_rows import ScanRows
 from fuzzytrack.recordings.scan_sectors import Beam, SectorPass
 from fuzzytrack.scan.scan import Scan
@@ -169,6 +170,7 @@ def run_sectors(
     period: float,
     *,
     tentative: bool = False,
+    radar: Callable[[], RadarPlace] | None = None,
 ) -> Iterator[ScannedScan]:
     """Track the plots of a turning antenna sector by sector, each recording by itself.
 
@@ -184,6 +186,8 @@ def run_sectors(
         About the time of a turn (s).
     tentative : bool
         Whether tentative tracks are reported, too.
+    radar : callable, optional
+        Makes the `radar` of each recording, see `SectorPass`.
 
     Yields
     ------
@@ -200,7 +204,8 @@ def run_sectors(
     before = last = 0
     for group, parts in groupby(plots, key=lambda pair: pair[0]):
         before = last
-        run = SectorRun(scanner, sectors, period, tentative=tentative)
+        place = None if radar is None else radar()
+        run = SectorRun(scanner, sectors, period, tentative=tentative, radar=place)
         steps = chain((run.advance(part) for _, part in parts), [_later(run.finish)])
         done = chain.from_iterable(steps)
         for number, (scan, reports) in enumerate(done):
@@ -218,13 +223,21 @@ class SectorRun:
     ----------
     scanner, sectors, period, tentative
         As for `run_sectors`.
+    radar : RadarPlace, optional
+        See `SectorPass`.
     """
 
     def __init__(
-        self, scanner: Scanner, sectors: int, period: float, *, tentative: bool = False
+        self,
+        scanner: Scanner,
+        sectors: int,
+        period: float,
+        *,
+        tentative: bool = False,
+        radar: RadarPlace | None = None,
     ) -> None:
         self._scanner, self._sectors, self._period = scanner, sectors, period
-        self._tentative = tentative
+        self._tentative, self._radar = tentative, radar
         self._held: list[ScanRows] = []
         self._pass: SectorPass | None = None
 
@@ -250,7 +263,9 @@ class SectorRun:
         antenna = antenna_of(first, self._period, first.file)
         beam = Beam.of(antenna, float(first.time[0]))
         session = self._scanner.start()
-        self._pass = SectorPass(session, beam, self._sectors, tentative=self._tentative)
+        self._pass = SectorPass(
+            session, beam, self._sectors, tentative=self._tentative, radar=self._radar
+        )
         yield from self._pass.advance(first)
 
 

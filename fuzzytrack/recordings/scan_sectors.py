@@ -19,7 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.recordings.scan_rhythm import AntennaTurn
+from fuzzytrack.recordings.antenna_turn import AntennaTurn
+from fuzzytrack.recordings.radar_place import RadarPlace
+from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_rows import ScanRows
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.track_reports import STATUSES, TrackReports
@@ -116,9 +118,20 @@ class SectorPass:
         Sectors of a turn, at least 4.
     tentative : bool
         Whether tentative tracks are reported, too.
+    radar : RadarPlace, optional
+        Position of the radar, and what counts plots; the origin before one is known.
     """
 
-    def __init__(self, session: Any, beam: Beam, sectors: int, *, tentative: bool = False) -> None:
+    def __init__(
+        self,
+        session: Any,
+        beam: Beam,
+        sectors: int,
+        *,
+        tentative: bool = False,
+        radar: RadarPlace | None = None,
+    ) -> None:
+        self._radar = radar or RadarPlace(ScanFindings(), (0.0, 0.0))
         self.session, self._beam, self._sectors = session, beam, sectors
         self._tentative = tentative
         # The sector in which the beam is, and the plots of the last ones that nobody has used.
@@ -128,7 +141,6 @@ class SectorPass:
         self._fresh: list[ScanRows] = []
         self._pool: ScanRows | None = None
         self._pool_sectors = np.empty(0, dtype=np.int64)
-        self._own = (0.0, 0.0)
         self._time = -math.inf
         # The sector in which each track was due last.
         self._done: dict[int, int] = {}
@@ -171,13 +183,14 @@ class SectorPass:
             return
         rows, self._fresh = ScanRows.joined(self._fresh), []
         known = np.flatnonzero(np.isfinite(rows.own.sum(axis=1)))
-        if len(known):
-            x, y = rows.own[known[-1]].tolist()
-            self._own = (x, y)
-        rows = rows.take(np.isfinite(rows.positions.sum(axis=1)))
+        last = int(known[-1]) if len(known) else -1
+        own = self._radar.move(rows.own[last], float(rows.time[last]))
+        good = np.isfinite(rows.positions.sum(axis=1))
+        self._radar.findings.missed += int(len(rows) - good.sum())
+        rows = rows.take(good)
         if not len(rows):
             return
-        places = self._beam.places(rows.positions - self._own, rows.time)
+        places = self._beam.places(rows.positions - own, rows.time)
         self._beam = self._beam.followed(places, rows.time, self._sectors)
         sectors = np.floor(places * self._sectors).astype(np.int64)
         self._pool = rows if self._pool is None else ScanRows.joined([self._pool, rows])
@@ -208,7 +221,7 @@ class SectorPass:
         if time <= self._time:
             time = math.nextafter(self._time, math.inf)
         self._time = time
-        scan = _scan(given, time, self._own)
+        scan = _scan(given, time, self._radar.place)
         starts = its < sector
         ids, due = self._due(sector, time)
         reports, unused = self.session.advance(
@@ -226,7 +239,9 @@ class SectorPass:
             keep = np.ones(len(pool), dtype=bool)
             keep[np.flatnonzero(near)] = waits
             self._pool, self._pool_sectors = pool.take(keep), sectors[keep]
-        yield _scan(None if given is None else given.take(~waits), time, self._own), reports
+        done = _scan(None if given is None else given.take(~waits), time, self._radar.place)
+        self._radar.findings.count(len(done))
+        yield done, reports
 
     def _due(self, sector: int, time: float) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """All tracks, and which are due: those in this sector, or passed, and not yet in this turn.
@@ -237,7 +252,7 @@ class SectorPass:
         tracks, n = self.session.tracks(), self._sectors
         ids = tracks.track_id
         ahead = (time - tracks.time)[:, None]
-        offset = tracks.position + ahead * tracks.velocity - self._own
+        offset = tracks.position + ahead * tracks.velocity - self._radar.place
         share = np.arctan2(offset[:, 0], offset[:, 1]) / _FULL
         # Tentative tracks come half a sector later, so that none on the other side of a border
         # takes the plot of a confirmed one.

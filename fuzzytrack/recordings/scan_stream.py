@@ -44,7 +44,13 @@ class ScanStream:
         if plots.sectors is None:
             self._session = scanner.start()
         else:
-            self._sectors = SectorRun(scanner, plots.sectors, plots.cut.period, tentative=tentative)
+            self._sectors = SectorRun(
+                scanner,
+                plots.sectors,
+                plots.cut.period,
+                tentative=tentative,
+                radar=plots.radar_place(),
+            )
 
     def advance(self, rows: ScanRows) -> Iterator[Answer]:
         """Take in rows, in the order in which they came.

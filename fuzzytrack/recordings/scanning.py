@@ -214,12 +214,17 @@ class ScanJob:
                 plots.sectors,
                 plots.cut.period,
                 tentative=tentative,
+                radar=plots.radar_place,
             )
-        fit = ScanFit(self.scanner, whole=plots.sectors is None)
+        turn = plots.cut.period if plots.cut.rule == "period" else None
+        fit = ScanFit(self.scanner, whole=plots.sectors is None, turn=turn)
         for each in found:
             fit.add(each)
             yield each
-        plots.findings.note(fit.notes())
+        plots.findings.check(plots.files.names[0])
+        # Scans that are none say nothing about the configuration.
+        if not plots.findings.doubt:
+            plots.findings.note(fit.notes())
 
     def whole(
         self, *, tentative: bool = False, progress: Progress | None = None

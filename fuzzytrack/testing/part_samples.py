@@ -134,9 +134,8 @@ def sample_scans(seed: int, count: int = 24) -> list[Scan]:
         targets = start + time * turned + random.normal(0.0, 1.0, (6, 2))
         seen = targets[random.random(6) < 0.9]
         clutter = random.uniform(-_REACH, _REACH, (random.poisson(8), 2))
-        plots = np.concatenate([seen, clutter, seen[:1]])[
-            random.permutation(len(seen) + len(clutter))
-        ]
+        twin = seen[:1] + random.normal(0.0, 1.0, seen[:1].shape)
+        plots = random.permutation(np.concatenate([seen, clutter, twin]))
         if k in (9, 10):
             plots = plots[:0]
         rows = np.arange(row, row + len(plots))

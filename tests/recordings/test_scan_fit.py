@@ -136,6 +136,19 @@ def test_aircraft_suit_their_configuration_only():
         assert "use config air" in told
 
 
+def test_turns_that_take_longer_or_less():
+    rng = np.random.default_rng(7)
+    t = np.sort(rng.uniform(0, 200, 120))
+    clutter = {"t": t, "x": rng.normal(0, 1e3, 120), "y": rng.normal(0, 1e3, 120)}
+    for period, said in (
+        (60.0, "120 plots are only 4 scans of 60 s, too few for a track; `period` is"),
+        (0.05, "scans of 0.05 s have no plot, and most of the others one; `period` is"),
+    ):
+        notes = ft.track_scans(clutter, period=period).job.plots.findings.notes
+        assert len(notes) == 2
+        assert said in notes[1]
+
+
 def test_the_notes_are_those_of_the_recording():
     rows = [(each.time, *place) for each in movers(100.0) for place in each.positions]
     t, x, y = np.array(rows).T

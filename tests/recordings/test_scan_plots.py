@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fuzzytrack import DataError
+from fuzzytrack import DataError, track_scans
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.scan_plots import ScanPlots, scans_of
 
@@ -85,6 +85,13 @@ def test_rows_without_a_position_are_counted_and_still_make_a_scan():
     )
 
 
+def test_copies_need_not_follow_each_other():
+    data = plots_of(n=[0] * 5, t=[0.0] * 5, x=[2.0, 1.0, 2.0, 3.0, 1.0], y=[0.0, 1.0, -0.0, 0, 1])
+    made, found = read(data, scan="n")
+    assert found[0][1].rows.tolist() == [1, 2, 4]
+    assert made.findings.copies == 2
+
+
 def test_copies_of_a_plot_are_dropped():
     data = plots_of(scan=[0, 0, 0], t=[0, 0, 0], x=[1, 1, 2], y=[3, 3, 3])
     made, found = read(data)
@@ -118,6 +125,25 @@ def test_position_of_the_radar():
     assert "position of the radar from columns rx, ry" in made.findings.notes
     _, usual = read({**THREE, "own_x_m": data["rx"], "own_y_m": data["ry"]}, scan="n")
     assert [scan.own for _, scan in usual] == [(7, 1), (7, 2), (7, 3)]
+
+
+def test_faults_of_the_position_of_the_radar_are_counted():
+    ox = np.arange(10) * 5.0
+    ox[3], ox[7] = np.nan, 1e4
+    n, here = np.arange(10), np.zeros(10)
+    data = plots_of(n=n, t=n * 1.0, x=ox + 100, y=here + 1, own_x=ox, own_y=here)
+    data["x"][3] = 100.0
+    made, found = read(data, scan="n")
+    assert found[3][1].own == (10.0, 0.0)
+    assert made.findings.sentences() == (
+        "1 scan without the position of the radar: that of the one before was taken",
+        "2 jumps of the position of the radar, taken as they are",
+    )
+    data["own_x"][:] = np.nan
+    made, found = read(data, scan="n")
+    assert "10 scans without the position of the radar: it is not known" in (
+        made.findings.sentences()
+    )
 
 
 def test_plots_relative_to_own_ship():
@@ -249,6 +275,35 @@ def test_what_is_not_recognized_says_what_to_give():
         ScanPlots.of(data)
 
 
+def test_one_target_shows_no_turn():
+    t = np.arange(100) * 10.0
+    seen = np.random.default_rng(6).uniform(size=100) < 0.8
+    data = plots_of(t=t[seen], x=100 + 3 * t[seen], y=200 - t[seen])
+    made, found = read(data)
+    assert made.said == "each plot is a scan; one every 10 s"
+    assert [len(scan) for _, scan in found] == seen[
+        seen.argmax() : 100 - seen[::-1].argmax()
+    ].tolist()
+
+
+def test_targets_at_equal_times_show_no_turn():
+    # The antenna could turn either way, and more than once between two plots.
+    side = np.tile([1.0, -1.0], 50)
+    data = plots_of(t=np.arange(100) * 1.0, x=300 * side, y=100 * side)
+    with pytest.raises(DataError, match="cannot tell which plots are of one scan"):
+        ScanPlots.of(data)
+
+
+@pytest.mark.parametrize("period", [60.0, 3.0, 0.05])
+def test_a_period_that_the_plots_deny_is_noted(period):
+    columns, *_ = turning(2.4)
+    said = "the antenna turns clockwise in 2.4 s, by the bearings of the plots; leave `period` out"
+    tracked = track_scans(columns, period=period)
+    notes = [note for note in tracked.job.plots.findings.notes if "position" not in note]
+    assert notes == [f"`period` is {period:.4g} s, but {said}, or give 2.4"]
+    assert not ScanPlots.of(columns, period=2.41).findings.doubt
+
+
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(st.floats(0, 0.35), min_size=3, max_size=12),
@@ -339,7 +394,7 @@ def test_pieces_of_any_size_give_the_same_scans(rows, how, seed):
 @pytest.mark.parametrize(
     ("reading", "options", "said"),
     [
-        ({}, {"period": 0}, "period: must be a number of seconds > 0, got 0"),
+        ({}, {"period": 0}, "period: must be from 0.001 to 86400 s, got 0"),
         ({}, {"period": 2, "scan": "n"}, "scan and period: both say"),
         ({}, {"sectors": 3}, "sectors: must be from 4 to 1024, got 3"),
         ({}, {"sectors": 8, "scan": "n"}, "scan and sectors: sectors follow the antenna"),
@@ -371,6 +426,12 @@ def test_polar_plots_are_relative():
     data = plots_of(scan=[0], t=[0], range=[1.0], az=[2.0], ox=[1], oy=[1])
     with pytest.raises(DataError, match="`own_ship`=ox,oy adds its position"):
         read(data, {"polar": ("range", "az")}, own=("ox", "oy"))
+
+
+def test_no_usable_plot_is_an_error():
+    data = plots_of(n=[0, 0, 1], t=[0.0, 0.0, 1.0], x=[np.nan] * 3, y=[1.0, 2.0, 3.0])
+    with pytest.raises(DataError, match="no plot can be used: 3 rows without a position"):
+        track_scans(data, scan="n")
 
 
 def test_a_scan_cell_may_not_be_empty():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from turning_radar import turning_radar
 
 from fuzzytrack import DataError, track_scans
-from fuzzytrack.recordings.scan_rhythm import AntennaTurn, turn_of_antenna
+from fuzzytrack.recordings.antenna_turn import AntennaTurn, turn_of_antenna
 from fuzzytrack.recordings.scan_rows import ScanRows
 from fuzzytrack.recordings.scan_sectors import Beam, SectorPass
 from fuzzytrack.scan.scan import Scan
@@ -132,6 +132,17 @@ def test_groups_have_antennas_of_their_own():
         np.testing.assert_allclose(reports.position, alone.position, atol=1e-3)
     first, second = (set(found.results[name].track_ids.tolist()) for name in "ab")
     assert not first & second
+
+
+def test_the_place_of_a_radar_is_that_of_its_beam():
+    columns, *_ = turning_radar(4, turns=12)
+    at_origin = track_scans(columns, sectors=8)
+    moved = {**columns, "x": columns["x"] + 4e3, "y": columns["y"] - 2e3}
+    moved["x"][5] = np.nan
+    there = track_scans(moved, sectors=8, own=("4000", "-2000"))
+    assert len(there) == len(at_origin)
+    found = there.job.plots.findings
+    assert (found.missed, found.plots) == (1, len(columns["t"]) - 1)
 
 
 def test_a_long_silence():
