@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -22,6 +22,7 @@ __all__ = [
     "ScenarioOrNone",
     "Seed",
     "Sigma",
+    "lags",
     "load_plugins",
     "names",
     "numbers_at",
@@ -105,3 +106,19 @@ def numbers_at(text: str, wanted: Iterable[str], option: str = "--at") -> dict[s
     if missing:
         raise ValueError(f"{option}: needs {', '.join(missing)} too; got {text!r}")
     return numbers
+
+
+def lags(text: str) -> float | dict[str, float] | Literal["auto"] | None:
+    """Lag of a clock (s), or that of each group, or that it is fitted: what follows ``--lag``."""
+    if text == "none":
+        return None
+    if text == "auto":
+        return "auto"
+    try:
+        if "=" in text:
+            return {name: float(value) for name, value in pairs(text, "--lag").items()}
+        return float(text)
+    except ValueError:
+        raise ValueError(
+            f"--lag: expected seconds, GROUP=SECONDS,…, auto or none, got {text!r}"
+        ) from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -25,6 +25,9 @@ from fuzzytrack.recordings.scanning import (
     ScannedRecording,
     scanner_with,
 )
+
+if TYPE_CHECKING:
+    from fuzzytrack.scoring.positions import Positions
 
 __all__ = ["scan"]
 
@@ -158,7 +161,7 @@ def scan(
         str | None,
         typer.Option(
             metavar="FILE.png",
-            help="Draw the tracks over the plots (or .pdf, .svg…); of several groups the first.",
+            help="Draw the tracks over the plots (or .pdf, .svg…).",
             rich_help_panel=_TRACKS,
         ),
     ] = None,
@@ -166,7 +169,23 @@ def scan(
         str | None,
         typer.Option(
             metavar="FILE.html",
-            help="Write the tracks as a page with a slider of time; of several groups the first.",
+            help="Write the tracks as a page with a slider of time.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
+    show: Annotated[
+        str | None,
+        typer.Option(
+            metavar="GROUP",
+            help="Group that --plot and --animate show. [default: the first]",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = None,
+    truth: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Table of true positions, by the clock of the plots, for --plot and --animate.",
             rich_help_panel=_TRACKS,
         ),
     ] = None,
@@ -219,6 +238,12 @@ def scan(
         raise ValueError("--json: -o - writes the tracks to standard output; name a file")
     if output_columns is not None and output is None:
         raise ValueError("--output-columns: are those of -o; give it")
+    pictures = _Pictures(plot, animate, show, truth)
+    for option, given in (("--show", show), ("--truth", truth)):
+        if given is not None and not pictures.any:
+            raise ValueError(f"{option}: is for --plot and --animate; give one of them")
+    if show is not None and group is None:
+        raise ValueError("--show: is one of the groups of --group; give it")
     job = ScanJob.of(
         files if len(files) > 1 else files[0],
         config,
@@ -227,17 +252,17 @@ def scan(
         output_columns=chosen,
         **how,
     )
-    pictures = _Pictures(plot, animate)
     totals = _run(job, output, pictures, tentative=tentative, quote_formulas=quote_formulas)
     if json:
         file = files[0] if len(files) == 1 else list(files)
-        _print_json(job, totals, {"file": file}, {"output": output, **asdict(pictures)})
+        written = {"output": output, "plot": plot, "animate": animate}
+        _print_json(job, totals, {"file": file}, written)
         return
     with told_aside(output):
         _print_table(job, totals)
-        for written in (output, plot, animate):
-            if written not in (None, STANDARD_OUTPUT):
-                say(f"wrote {written}")
+        for each in (output, plot, animate):
+            if each not in (None, STANDARD_OUTPUT):
+                say(f"wrote {each}")
 
 
 def _names(text: str | None, option: str) -> tuple[str, ...] | None:
@@ -246,10 +271,12 @@ def _names(text: str | None, option: str) -> tuple[str, ...] | None:
 
 @dataclass(frozen=True)
 class _Pictures:
-    """Files of pictures that are asked for."""
+    """Files of pictures that are asked for; the group that they show, and the file of the truth."""
 
     plot: str | None
     animate: str | None
+    show: str | None
+    truth: str | None
 
     @property
     def any(self) -> bool:
@@ -265,19 +292,39 @@ class _Pictures:
                 raise ValueError(f"--animate: {self.animate}: is a page; give it the suffix .html")
             check_output(self.animate, inputs)
 
-    def write(self, found: ScannedRecording) -> None:
+    def read_truth(self, job: ScanJob) -> Positions | None:
+        """True positions of all groups, before the tracks are made."""
+        if self.truth is None:
+            return None
+        from fuzzytrack.scoring.position_files import TableOptions, read_truth
+
+        return read_truth(
+            self.truth, job.plots.files, TableOptions(group=job.plots.columns.group or None)
+        )
+
+    def group(self, found: ScannedRecording) -> str:
+        """The group that is shown."""
+        if self.show is None:
+            return next(iter(found.results))
+        if self.show not in found.results:
+            there = ", ".join(found.results)
+            raise ValueError(f"--show: no group {self.show!r}; expected one of {there}")
+        return self.show
+
+    def write(self, found: ScannedRecording, group: str, truth: Positions | None) -> None:
         """Write them."""
+        if truth is not None and truth.group is not None:
+            truth = truth.of_group(group)
         if self.plot is not None:
-            save_picture(self.plot, found.plot, found.job.inputs)
+            save_picture(self.plot, lambda: found.plot(group, truth=truth), found.job.inputs)
         if self.animate is not None:
             from fuzzytrack.reports.scan_page import write_scan_page
 
-            group, result = next(iter(found.results.items()))
             read = str(found.job.inputs[0])
             name = "standard input" if read == STANDARD_INPUT else Path(read).name
             title = f"Tracks of {name}" + (f", {group}" if group else "")
-            axes = found.job.table.axes
-            write_scan_page(self.animate, result, found.scans[group], None, axes, title=title)
+            axes, result = found.job.table.axes, found.results[group]
+            write_scan_page(self.animate, result, found.scans[group], truth, axes, title=title)
 
 
 def _run(
@@ -293,11 +340,13 @@ def _run(
                 return job.write(
                     place, tentative=tentative, progress=watch, quote_formulas=quote_formulas
                 )
+        truth = pictures.read_truth(job)
         with progress("tracking") as watch:
             found = job.whole(tentative=tentative, progress=watch)
+        group = pictures.group(found)
         if place is not None:
             found.write(place, quote_formulas=quote_formulas)
-        pictures.write(found)
+        pictures.write(found, group, truth)
         return dict(found.totals_of)
 
 

@@ -65,7 +65,7 @@ def tune(
     lag: Annotated[
         str | None,
         typer.Option(
-            metavar="S|auto",
+            metavar="S|GROUP=S,…|auto",
             help="Time by which the clock of the plots is late; auto fits it once. [default: 0]",
         ),
     ] = None,
@@ -156,7 +156,7 @@ def tune(
         seed=seed,
         truth=truth,
         reading=reading,
-        lag=None if lag is None else number_or(lag, "--lag", {"auto": "auto", "0": 0.0}),
+        lag=None if lag is None else options.lags(lag),
         moving_above=moving_above,
         group=group,
         scan=scan,

@@ -15,7 +15,7 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.scoring.instants import Timing
 from fuzzytrack.scoring.metrics import METRICS, Settings
 from fuzzytrack.scoring.position_files import TableOptions, read_positions, read_times
-from fuzzytrack.scoring.score_tracks import Lag, score_positions
+from fuzzytrack.scoring.score_tracks import score_positions
 from fuzzytrack.scoring.scores import Scores
 
 __all__ = ["score"]
@@ -147,7 +147,7 @@ def score(
     """
     settings = Settings(cutoff=cutoff, order=order, within=within, match=match, window=window)
     timing = Timing(step=_seconds(step, "--step"), max_gap=_seconds(max_gap, "--max-gap"))
-    late = _lag(lag)
+    late = options.lags(lag)
     if plot is not None:
         check_picture(plot, (tracks, truth))
     of_tracks = TableOptions(
@@ -212,25 +212,6 @@ def _names(text: str | None, option: str) -> tuple[str, ...] | None:
 
 def _seconds(text: str | None, option: str) -> float | None:
     return None if text is None else float(number_or(text, option, {}))
-
-
-def _lag(text: str) -> Lag:
-    words: dict[str, Lag] = {"auto": "auto", "none": None}
-    if text in words:
-        return words[text]
-    if "=" in text:
-        found = options.pairs(text, "--lag")
-        return {name: _number(value, text) for name, value in found.items()}
-    return _number(text, text)
-
-
-def _number(value: str, text: str) -> float:
-    try:
-        return float(value)
-    except ValueError:
-        raise ValueError(
-            f"--lag: expected seconds, GROUP=SECONDS,…, auto or none, got {text!r}"
-        ) from None
 
 
 # -------------------------------------------------------------------- tables

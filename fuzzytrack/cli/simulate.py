@@ -25,6 +25,14 @@ _MANY = "Scenes of many targets"
 _TABLES = (".csv", ".parquet", ".pq", ".txt")
 
 
+def _print_schema(asked: bool) -> None:
+    if asked:
+        from fuzzytrack.simulation.scene.schema import dumps_scene_schema
+
+        say(dumps_scene_schema().rstrip())
+        raise typer.Exit
+
+
 def simulate(
     scenario: Annotated[
         str,
@@ -76,6 +84,16 @@ def simulate(
         typer.Option(
             "--truth-id",
             help="With column truth_id, the target of each plot; 0 is clutter.",
+            rich_help_panel=_MANY,
+        ),
+    ] = False,
+    schema: Annotated[
+        bool,
+        typer.Option(
+            "--schema",
+            callback=_print_schema,
+            is_eager=True,
+            help="Print the JSON Schema of files of scenes, for editors, and do nothing else.",
             rich_help_panel=_MANY,
         ),
     ] = False,

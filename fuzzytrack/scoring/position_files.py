@@ -136,7 +136,8 @@ def read_truth(truth: PathLike, plots: PlotFiles, options: TableOptions | None =
     plots : PlotFiles
         The recording.
     options : TableOptions, optional
-        What the columns of the truth are.
+        What the columns of the truth are; those of position and time are the same as of the plots,
+        if it has them and nothing else is said.
 
     Raises
     ------
@@ -145,7 +146,8 @@ def read_truth(truth: PathLike, plots: PlotFiles, options: TableOptions | None =
     OSError
         If the file cannot be read.
     """
-    found = _opened(truth, "truth", options or TableOptions())
+    options = options or TableOptions()
+    found = _opened(truth, "truth", _like(options, options, plots.columns, truth))
     found = replace(found, files=_in_frame(found.files, plots))
     return _read(found, "truth", tentative=True)[0]
 

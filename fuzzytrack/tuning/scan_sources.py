@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 from fuzzytrack.errors import DataError
@@ -63,7 +63,7 @@ def recorded_scans(
     truth: str | os.PathLike[str],
     reading: Reading | None = None,
     *,
-    lag: float | Literal["auto"] | None = None,
+    lag: float | Mapping[str, float] | Literal["auto"] | None = None,
     moving_above: float | None = None,
     group: str | None = None,
     **division: Any,
@@ -79,7 +79,7 @@ def recorded_scans(
     reading : Reading, optional
         How the plots are read.
     lag, moving_above
-        See `ScanRecording`.
+        See `ScanRecording`; a lag may be that of each group.
     group : str, optional
         Column that says which of several recordings a row belongs to, in both tables.
     **division
@@ -87,6 +87,8 @@ def recorded_scans(
 
     Raises
     ------
+    ValueError
+        If a group has no lag, where lags are given by group.
     DataError
         If a table does not hold what it must, or the truth has nothing of a group.
     OSError
@@ -110,11 +112,24 @@ def recorded_scans(
                 name,
                 mine,
                 (true.time, true.id, true.position),
-                lag=lag,
+                lag=_lag_of(lag, word),
                 moving_above=moving_above,
             )
         )
     return tuple(found)
+
+
+def _lag_of(
+    lag: float | Mapping[str, float] | Literal["auto"] | None, group: str
+) -> float | Literal["auto"] | None:
+    """Lag of a group."""
+    if not isinstance(lag, Mapping):
+        return lag
+    if not group:
+        raise ValueError("lag: is given by group, but there are no groups; expected one number")
+    if group not in lag:
+        raise ValueError(f"lag: has no group {group!r}; expected a lag of every group")
+    return lag[group]
 
 
 def scan_sources(

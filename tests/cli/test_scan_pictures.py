@@ -52,6 +52,31 @@ def test_of_several_groups_the_first_is_on_the_page(run, boats, tmp_path):
     assert len(np.frombuffer(base64.b64decode(data_of(page)["times"]), "<f8")) == 10
 
 
+def test_another_group_with_the_truth(run, boats, csv, tmp_path):
+    page, picture = tmp_path / "p.html", tmp_path / "p.png"
+    truth = csv(
+        "run,t,target,north_m,east_m\na,0,1,0,50\nb,17,1,51,50\nb,25.5,1,76.5,50\n", "truth.csv"
+    )
+    words = ("scan", boats, "--axes", "north_m,east_m", "--group", "run", "--show")
+    shown = ("--animate", page, "--plot", picture, "--truth", truth)
+    result = run(*words, "b", *shown)
+    assert result.exit_code == 0, result.stderr
+    assert f"<h1>Tracks of {boats.name}, b</h1>" in page.read_text("utf-8")
+    told = data_of(page)["truth"]
+    assert told["names"] == ["1"]
+    assert np.frombuffer(base64.b64decode(told["time"]), "<f8").tolist() == [17, 25.5]
+    out = tmp_path / "t.csv"
+    none = run(*words, "c", *shown, "-o", out)
+    told = "error: --show: no group 'c'; expected one of a, b\n"
+    assert (none.exit_code, none.stderr) == (2, told)
+    assert not out.exists()
+    for option, value in (("--show", "a"), ("--truth", truth)):
+        alone = run("scan", boats, option, value, "-o", out)
+        assert alone.exit_code == 2
+        assert f"{option}: is for --plot and --animate; give one of them" in alone.stderr
+    assert "--show: is one of the groups" in run(*words[:4], "--show", "a", *shown).stderr
+
+
 @pytest.mark.parametrize(
     ("name", "message"),
     [

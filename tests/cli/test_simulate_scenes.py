@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack.simulation.scene import load_scene, simulate_scans
+from fuzzytrack.simulation.scene.schema import dumps_scene_schema
 
 
 def rows(path):
@@ -15,6 +16,11 @@ def rows(path):
 
 def column(table, name):
     return np.array([row[name] for row in table], float)
+
+
+def test_the_schema_is_printed_alone(run):
+    result = run("simulate", "--schema")
+    assert (result.exit_code, result.stdout) == (0, dumps_scene_schema())
 
 
 def test_plots_truth_and_scans_are_those_of_the_simulation(run, tmp_path):

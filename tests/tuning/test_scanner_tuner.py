@@ -239,6 +239,11 @@ def test_groups_of_a_file_are_recordings(files):
     assert [each.group for each in found] == ["run one", "run two"]
     assert [len(each.scans) for each in found] == [12, 12]
     assert [len(each.truth[0]) for each in found] == [12, 12]
+    late = {"one": 1.5, "two": 2.5}
+    found = recorded_scans(files / "plots.csv", files / "truth.csv", group="run", lag=late)
+    assert [each.lag for each in found] == [1.5, 2.5]
+    with pytest.raises(ValueError, match="lag: has no group 'two'"):
+        recorded_scans(files / "plots.csv", files / "truth.csv", group="run", lag={"one": 1.5})
     text = (files / "truth.csv").read_text().replace("two", "three")
     (files / "truth.csv").write_text(text)
     with pytest.raises(DataError, match="no true position of run two"):
