@@ -268,7 +268,7 @@ class Document:
     ) -> dict[str, Node]:
         """Values of a mapping whose keys are fixed."""
         entries = self.entries(node, role)
-        allowed = (*required, *optional)
+        allowed = tuple(dict.fromkeys((*required, *optional)))
         for word, (key, _) in entries.items():
             if word not in allowed:
                 raise self.unknown(key, word, f"key in {role}:", allowed)
@@ -283,10 +283,10 @@ class Document:
             raise self.error(node, f"{role} must be a list, not {_what(node)}")
         return node.items
 
-    def text(self, node: Node, role: str) -> str:
-        """Text of a scalar that is not empty."""
+    def text(self, node: Node, role: str, meant: str = "a word") -> str:
+        """Text of a scalar that is not empty; `meant` says in the message what it should be."""
         if not isinstance(node, Scalar) or not node.text:
-            raise self.error(node, f"{role} must be a word, not {_what(node)}")
+            raise self.error(node, f"{role} must be {meant}, not {_what(node)}")
         return node.text
 
     def choice(self, node: Node, role: str, allowed: Collection[str]) -> str:
@@ -298,7 +298,7 @@ class Document:
 
     def number(self, node: Node, role: str) -> float:
         """Read a finite number."""
-        return self.as_number(node, self.text(node, role), role)
+        return self.as_number(node, self.text(node, role, "a finite number"), role)
 
     def as_number(self, node: Node, word: str, role: str, offset: int = 0) -> float:
         """Read a finite number written in part of a scalar."""

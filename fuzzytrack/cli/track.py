@@ -30,7 +30,7 @@ from fuzzytrack.io.formats import check_table
 from fuzzytrack.io.plot_files import ROWS
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Track
-from fuzzytrack.io.track_formats import check_geo_tracks, is_geo
+from fuzzytrack.io.track_formats import TRACK_SUFFIXES, check_geo_tracks, is_geo
 from fuzzytrack.recordings.preparation import DEFAULT_TRACKER, PreparedPlots, prepare
 from fuzzytrack.recordings.totals import Totals
 from fuzzytrack.recordings.tracking import TrackedRecording, track_recording
@@ -238,8 +238,10 @@ def _is_large(file: str) -> bool:
 
 def _look_ahead(file: str, output: str | None, plot: str | None) -> None:
     """Find out what cannot be written before the work is done."""
-    if output is not None:
-        (check_geo_tracks if is_geo(output) else check_table)(output, (file,))
+    if output is not None and is_geo(output):
+        check_geo_tracks(output, (file,))
+    elif output is not None:
+        check_table(output, (file,), others=TRACK_SUFFIXES)
     if plot is not None:
         check_picture(plot, (file,))
 

@@ -128,16 +128,21 @@ def open_table(
     return reader.open_source(file)
 
 
-def _format_of_output(path: PathLike) -> Format:
+def _format_of_output(path: PathLike, others: Sequence[str] = ()) -> Format:
     suffix = Path(path).suffix.lower()
     for suffixes, found in _FORMATS.items():
         if suffix in suffixes:
             found.check(os.fspath(path))
             return found
-    raise DataError(f"{path}: cannot write {suffix or 'without suffix'}; .csv or .parquet")
+    *first, last = (".csv", ".parquet", *others)
+    raise DataError(
+        f"{path}: cannot write {suffix or 'without suffix'}; {', '.join(first)} or {last}"
+    )
 
 
-def check_table(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
+def check_table(
+    path: PathLike, inputs: tuple[PathLike, ...] = (), *, others: Sequence[str] = ()
+) -> None:
     """Check that a table can be written, before the work is done.
 
     Parameters
@@ -146,6 +151,8 @@ def check_table(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
         The file to be written; it need not exist.
     inputs : tuple of str or path
         Files that must not be overwritten.
+    others : sequence of str
+        Suffixes of what else the caller writes, for the message.
 
     Raises
     ------
@@ -154,7 +161,7 @@ def check_table(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> None:
     OSError
         If the file cannot be written.
     """
-    _format_of_output(path)
+    _format_of_output(path, others)
     check_output(path, inputs)
 
 

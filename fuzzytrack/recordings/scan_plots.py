@@ -437,7 +437,7 @@ def _columns(
     place: tuple[str, ...] = ()
     if own is not None:
         if len(own) != 2:
-            raise ValueError(f"own: {len(own)} given; expected two columns")
+            raise ValueError(f"own: {len(own)} given; expected two columns, or two numbers (m)")
         if listed is None or any(name in names for name in own):
             place = tuple(known(names, name, "own", file) for name in own)
     elif not files.columns.own_ship:

@@ -86,14 +86,16 @@ class ScanTable:
             new, _, old = text.rpartition("=")
             old = "t" if old == table.time and old not in names else old
             if old not in names:
-                raise DataError(
-                    f"output_columns: no column {old!r}{suggestion(old, (*names, table.time))}"
-                )
+                known = list(dict.fromkeys((*names, table.time)))
+                raise DataError(f"output_columns: no column {old!r}{suggestion(old, known)}")
             chosen.append((old, new or (text if text == table.time else old)))
         written = [new for _, new in chosen]
         doubled = [name for name in written if written.count(name) > 1]
         if doubled:
-            raise DataError(f"two columns of the output would be {doubled[0]!r}")
+            raise DataError(
+                f"output_columns: two columns of the output would be {doubled[0]!r}; give one of "
+                "them another name, as in NEW=NAME"
+            )
         return cls(table.axes, table.clock, group, table.time, table.frame, tuple(chosen))
 
     @property

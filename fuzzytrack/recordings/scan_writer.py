@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io import motion
-from fuzzytrack.io.cat062 import SystemTracks, is_cat062, write_blocks
+from fuzzytrack.io.cat062 import SUFFIXES, SystemTracks, is_cat062, write_blocks
 from fuzzytrack.io.files import PathLike, check_output, whole_file
 from fuzzytrack.io.formats import PARQUET, check_table, table_writer
 from fuzzytrack.io.geo_track import GeoTrack
-from fuzzytrack.io.track_formats import check_geo_tracks, is_geo, write_geo_tracks
+from fuzzytrack.io.track_formats import TRACK_SUFFIXES, check_geo_tracks, is_geo, write_geo_tracks
 from fuzzytrack.recordings.scan_table import ScanTable
 from fuzzytrack.scan.track_reports import STATUSES, TrackReports
 
@@ -56,7 +56,7 @@ def check_scan_tracks(path: PathLike, table: ScanTable, inputs: tuple[PathLike, 
     elif is_cat062(path):
         check_output(path, inputs)
     else:
-        check_table(path, inputs)
+        check_table(path, inputs, others=(*TRACK_SUFFIXES, *SUFFIXES))
         return
     if table.names != table.all_names:
         raise DataError(f"{path}: output_columns: only tables have columns; write .csv or .parquet")

@@ -20,7 +20,7 @@ from fuzzytrack.reprs import summary
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scan_result import ScanResult
 from fuzzytrack.scan.scan_tracker import ScanTracker
-from fuzzytrack.scan.scanners import as_scanner
+from fuzzytrack.scan.scanners import as_scanner, shipped_scanners
 from fuzzytrack.scan.track_reports import TrackReports
 from fuzzytrack.scan.update import updates
 from fuzzytrack.tasks import Progress
@@ -340,6 +340,11 @@ def scanner_with(
     scanner = as_scanner(config)
     if tracker is None:
         return scanner
+    if tracker in shipped_scanners():
+        raise ValueError(
+            f"tracker: {tracker!r} is a configuration of a scan tracker, not a tracker of the "
+            "package; give it as `config`"
+        )
     make = updates.get("tracker")
     return replace(scanner, update=make(tracker))
 

@@ -16,7 +16,12 @@ from fuzzytrack.io.formats import PARQUET, check_table, table_writer
 from fuzzytrack.io.piece import Piece, joined_cells
 from fuzzytrack.io.recording import Recording
 from fuzzytrack.io.table import Words
-from fuzzytrack.io.track_formats import check_geo_tracks, is_geo, write_geo_tracks
+from fuzzytrack.io.track_formats import (
+    TRACK_SUFFIXES,
+    check_geo_tracks,
+    is_geo,
+    write_geo_tracks,
+)
 from fuzzytrack.recordings.track_table import TrackRows, TrackTable
 from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.result import TrackResult
@@ -51,7 +56,7 @@ def check_tracks(path: PathLike, table: TrackTable, inputs: tuple[PathLike, ...]
         check_geo_tracks(path, inputs, on_earth=table.on_earth, dated=table.epoch is not None)
         return
     _checked_names(path, table)
-    check_table(path, inputs)
+    check_table(path, inputs, others=TRACK_SUFFIXES)
 
 
 @contextmanager

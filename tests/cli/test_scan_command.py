@@ -160,6 +160,8 @@ def test_python_gives_the_same(run, harbor, tmp_path):
         ("scan,t,x,y\n0,0,1,1\n", ["--stale"], "--stale: is about plots of one track"),
         ("scan,t,x,y\n0,0,1,1\n", ["--sectors", "2"], "--sectors: must be from 4 to 1024, got 2"),
         ("scan,t,x,y\n0,0,1,1\n", ["--config", "defalt"], "defalt"),
+        ("scan,t,x,y\n0,0,1,1\n", ["--tracker", "air"], "--tracker: 'air' is a configuration of"),
+        ("scan,t,x,y\n0,0,,1\n", ["-o", "a.csv"], "no plot can be used: 1 row without a position"),
         ("scan,t,x,y\n0,0,1,1\n", ["--output-columns", "t"], "--output-columns: are those of -o"),
         ("scan,t,x,y\n0,0,1,1\n", ["-o", "a.csv", "--output-columns", "u"], "no column 'u'"),
         ("scan,t,x,y\n0,0,1,1\n", ["-o", "-", "--json"], "--json: -o - writes the tracks"),

@@ -167,3 +167,14 @@ def test_what_cannot_be_tuned_is_told_in_one_line(fails):
     words = ("scanner", "tune", "default", "crossing:scans.count=8")
     assert "no number 'gate.limt'" in fails(*words, "--free", "gate.limt")
     assert "unknown 'osp'" in fails(*words, "--metric", "osp")
+
+
+def test_a_list_in_place_of_a_number_and_a_key_that_is_none(fails, tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text("name: mine\nbased_on: default\nsensor: {range_noise: [1]}\n")
+    said = fails("scanner", "check", file)
+    assert said.endswith(
+        "mine.yaml:3:23: sensor: range_noise must be a number >= 0 (m), not a list"
+    )
+    file.write_text("name: mine\ntracks: 3\n")
+    assert "allowed: name, scanner, description, based_on" in fails("scanner", "check", file)

@@ -81,6 +81,7 @@ def test_chosen_columns_under_other_names(tmp_path):
         (("spede",), "output_columns: no column 'spede'; did you mean 'speed'?"),
         (("x", "x=y"), "two columns of the output would be 'x'"),
         (("latitude",), "no column 'latitude'"),
+        (("longitude",), "since_last, plot"),
     ],
 )
 def test_columns_that_are_not_there(chosen, said):
@@ -163,7 +164,7 @@ def test_formats_that_do_not_fit(tmp_path):
         ("tracks.geojson", table_of(), "needs positions on the earth"),
         ("tracks.kml", table_of(site=(60, 10)), "needs the date"),
         ("tracks.ast", table_of(chosen=("t",)), "only tables have columns"),
-        ("tracks.xyz", table_of(), "cannot write .xyz"),
+        ("tracks.xyz", table_of(), ".csv, .parquet, .geojson, .kml, .czml, .gpx, .ast or"),
     ):
         with pytest.raises(DataError, match=said):
             check_scan_tracks(tmp_path / name, table)

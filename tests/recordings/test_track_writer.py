@@ -239,6 +239,6 @@ def test_tracks_that_are_not_on_the_earth(tmp_path):
             check_tracks(tmp_path / "o.kml", table)
     check_tracks(tmp_path / "o.gpx", replace(EARTH, epoch=None))
     check_tracks(tmp_path / "o.kml", EARTH)
-    with pytest.raises(DataError, match=r"cannot write .xls; .csv or .parquet"):
+    with pytest.raises(DataError, match=r"cannot write .xls; .csv, .parquet, .geojson"):
         check_tracks(tmp_path / "o.xls", XY)
     assert list(tmp_path.iterdir()) == []

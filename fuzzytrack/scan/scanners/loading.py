@@ -44,7 +44,7 @@ def loads_configuration(text: str | bytes, file: str = "<text>") -> Configuratio
         If the text is no configuration; names file, line, column, the offending word and the
         allowed words.
     """
-    return _read(Document(text, file, failure=ScannerError), _MAX_CHAIN)
+    return _read(Document(text, file, failure=ScannerError), ())
 
 
 def load_configuration(name_or_path: str | os.PathLike[str]) -> Configuration:
@@ -61,17 +61,28 @@ def load_configuration(name_or_path: str | os.PathLike[str]) -> Configuration:
     ScannerError
         If there is no such name, or the file cannot be read, or is no configuration.
     """
-    return _read(_SHIPPED.document(name_or_path), _MAX_CHAIN)
+    return _read(_SHIPPED.document(name_or_path), ())
 
 
-def _read(document: Document, chain: int) -> Configuration:
+def _read(document: Document, before: tuple[str, ...]) -> Configuration:
+    """Configuration of a document, on which files are based, one on the other."""
+    chain = (*before, document.file)
+
     def base(text: str) -> Configuration:
-        if chain == 0:
+        found = _SHIPPED.document(_beside(text, document.file))
+        places = [os.path.realpath(file) for file in chain]
+        if os.path.realpath(found.file) in places:
+            said = ", ".join([*chain, found.file])
             raise ScannerError(
-                f"based_on: more than {_MAX_CHAIN} files are based on one another; does one of "
-                "them lead back to itself?"
+                f"based_on: each file is based on the next one, in a circle: {said}; base one of "
+                "them on a file outside"
             )
-        return _read(_SHIPPED.document(_beside(text, document.file)), chain - 1)
+        if len(chain) > _MAX_CHAIN:
+            raise ScannerError(
+                f"based_on: more than {_MAX_CHAIN} files are based on one another; copy the "
+                "numbers of some into one"
+            )
+        return _read(found, chain)
 
     return ScannerReader(document, Sensor, ROLES, base).configuration()
 

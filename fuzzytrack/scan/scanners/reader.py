@@ -204,7 +204,9 @@ class ScannerReader:
 
     def _value(self, what: str, meant: Parameter | Word, node: Node) -> float | int | str:
         """Value of a number or word of a part."""
-        text = self.document.text(node, what)
+        unit = f" ({meant.unit})" if isinstance(meant, Parameter) and meant.unit else ""
+        allowed = "a word" if isinstance(meant, Word) else f"{meant.allowed}{unit}"
+        text = self.document.text(node, what, allowed)
         if isinstance(meant, Word):
             if not meant.allows(text):
                 guess = suggestion(text, meant.choices)
@@ -212,8 +214,5 @@ class ScannerReader:
             return text
         value = float(text) if is_number(text) else None
         if value is None or not meant.allows(value):
-            unit = f" ({meant.unit})" if meant.unit else ""
-            raise self.document.error(
-                node, f"{what} must be {meant.allowed}{unit}, not {quoted(text)}"
-            )
+            raise self.document.error(node, f"{what} must be {allowed}, not {quoted(text)}")
         return int(value) if meant.whole else value
