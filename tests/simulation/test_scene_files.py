@@ -190,7 +190,7 @@ def test_settings_are_changed_by_their_path(path, text, found):
         ("radar..reach", "3", "a name is missing between two points"),
         ("radar.reach", "3}, a: {b: 3", "text after the end"),
         ("radar.reach", "[3", "'[' is closed by no ']'"),
-        ("radar.reach", "", "reach must be a word, not nothing"),
+        ("radar.reach", "", "reach must be a finite number, not nothing"),
     ],
 )
 def test_a_wrong_setting_has_no_place_in_the_file(path, text, message):
