@@ -47,7 +47,7 @@ def write_out(
         edits = TextEdits(text, file)
         node = next((n for n in _path(edits, variable, set_name) if _is_shared(edits, n)), None)
         if node is None:
-            return EditedText(text)
+            return EditedText(text, edits.before)
         if edits.is_alias(node) and len(_aliases(edits, node)) > 1:
             _put_copy(edits, node, keep_anchor=False)
         else:

@@ -56,7 +56,10 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
         If the text, before or after, is no rule base, there is no such rule, or the rule shares
         its consequents with others (``if any``, anchors).
     """
-    edits = TextEdits(text, file)
+    return _with_cell(TextEdits(text, file), where, cell)
+
+
+def _with_cell(edits: TextEdits, where: Mapping[str, str], cell: str) -> EditedText:
     before = edits.before
     key = _known_conditions(before, where)
     node = _own_consequents(edits, key, where)
@@ -101,13 +104,14 @@ def set_consequents(
     RuleBaseError
         As for `set_cell`.
     """
-    before = TextEdits(text, file).before
+    edits = TextEdits(text, file)
+    before = edits.before
     _known_conditions(before, where)
     rule = _checked_rule(before, where, consequents)
     cell = consequents_text(rule.consequents)
     if before.layout is not None:
         cell = cell_text(rule, before.layout.cells, before)
-    return set_cell(text, where, cell, file)
+    return _with_cell(edits, where, cell)
 
 
 def add_rule(

@@ -338,7 +338,8 @@ def _result_of_shape(
     if after != expected:
         edits.result(expected, node, f"the shape of {quoted(new.name)}")
     order = [(v.name, s.name) for v in _variables(after) for s in v.sets]
-    return EditedText(text, [p for p in order if p in changed and p != (variable, new.name)])
+    also = [place for place in order if place in changed and place != (variable, new.name)]
+    return EditedText(text, after, also)
 
 
 # -------------------------------------------------------------------- columns and rows

@@ -26,16 +26,22 @@ class EditedText(str):
     ----------
     text : str
         The text.
+    rules : RuleBase
+        The rule base that has been read from it.
     also : tuple of (str, str)
         Sets that were changed along, as (variable, set): those that share their text by an anchor
         with the one that was to be changed.
     """
 
+    rules: RuleBase
     also: tuple[tuple[str, str], ...]
 
-    def __new__(cls, text: str, also: Iterable[tuple[str, str]] = ()) -> EditedText:
+    def __new__(
+        cls, text: str, rules: RuleBase, also: Iterable[tuple[str, str]] = ()
+    ) -> EditedText:
         """Make the text; ``str`` is filled when it is made, not in ``__init__``."""
         edited = super().__new__(cls, text)
+        edited.rules = rules
         edited.also = tuple(also)
         return edited
 
@@ -242,7 +248,7 @@ class TextEdits:
                 f"{what} would change other parts too, which share this text by an anchor; "
                 "write them out first",
             )
-        return EditedText(text, also)
+        return EditedText(text, after, also)
 
 
 def _walk(node: Node, text: str, keys: bool) -> Iterator[Node]:

@@ -1,0 +1,173 @@
+"""A session without a browser."""
+
+import json
+
+import pytest
+
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.studio.folder import Folder, FolderError
+from fuzzytrack.studio.session import Session
+
+WHERE = {"E": "ze", "dE": "ze"}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "files").mkdir()
+    return Folder(tmp_path / "files")
+
+
+def shown(session):
+    return session.explain({"E": 0, "dE": 0})["rules"][0]["then"][0]["set"]
+
+
+def test_edits_are_drawn_undone_and_made_again():
+    session = Session()
+    first = session.texts.rules.text
+    assert session.do("cell", {"where": WHERE, "says": "S-S"}) == ()
+    assert shown(session) == "S"
+    for width in (0.2, 0.3):
+        shape = {"variable": "E", "set": "ze", "parameters": [-width, 0, width]}
+        assert session.do("shape", shape, gesture="drag") == (("dE", "ze"),)
+    assert session.state()["undo"] == 2
+    assert session.undo()
+    assert session.undo()
+    assert session.texts.rules.text == first
+    assert shown(session) == "L"
+    assert not session.undo()
+    assert session.redo()
+    assert shown(session) == "S"
+    assert (session.state()["undo"], session.state()["redo"]) == (1, 1)
+
+
+def test_a_refused_edit_changes_nothing():
+    session = Session()
+    before = session.state()
+    with pytest.raises(RuleBaseError, match="unknown set of stiffness 'X'"):
+        session.do("cell", {"where": WHERE, "says": "X-L"})
+    with pytest.raises(RuleBaseError, match="is used by the rules"):
+        session.do("remove-set", {"variable": "damping", "set": "L"})
+    assert session.state() == before
+
+
+def test_a_text_that_does_not_load_keeps_the_last_rule_base():
+    session = Session()
+    text = session.texts.rules.text
+    session.replace("rules", text.replace("nl: [S-L, M-L", "nl: [S-L, M-X"))
+    state = session.state()
+    (complaint,) = state["rules"]["complaints"]
+    assert complaint["cell"] == {"E": "nm", "dE": "nl"}
+    assert state["rules"]["text"] != text
+    assert state["model"]["table"] == {
+        "columns": "E",
+        "rows": "dE",
+        "cells": ["stiffness", "damping"],
+    }
+    assert session.surfaces(["alpha"], 5).values["alpha"].shape == (5, 5)
+    with pytest.raises(RuleBaseError, match=r"does not load: unknown set of damping 'X'.*or undo"):
+        session.do("cell", {"where": WHERE, "says": "L-L"})
+    session.undo()
+    assert session.state()["rules"]["complaints"] == []
+    with pytest.raises(ValueError, match="text: is longer than 128 KiB"):
+        session.replace("rules", "x" * 200_000)
+    with pytest.raises(ValueError, match="kind: must be one of rules, scenario, got 'x'"):
+        session.replace("x", "")
+
+
+def test_scenarios():
+    session = Session(scenario="waypoints")
+    assert session.reading.scenario.position.shape[-1] == 2
+    name = session.reading.scenario.name
+    session.replace("scenario", session.texts.scenario.text.replace("sigma: 115", "sigma: -1"))
+    (complaint,) = session.state()["scenario"]["complaints"]
+    assert complaint["path"][:2] == ["sensors", "sigma"]
+    assert session.reading.scenario.name == name
+    session.undo()
+    assert session.state()["scenario"]["complaints"] == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("  - chan-style\n", "  - ../secret.yaml\n"),
+        ("  - chan-style\n", "  - /etc/secret\n"),
+        ("  - chan-style\n", "  - fuzzy:rules=../a.yaml\n"),
+        ("  motion: turn\n", "  file: ../secret.csv\n"),
+    ],
+)
+def test_scenarios_name_files_of_the_folder_only(folder, old, new):
+    session = Session(folder)
+    assert session.texts.scenario.text.count(old) == 1
+    session.replace("scenario", session.texts.scenario.text.replace(old, new))
+    (complaint,) = session.state()["scenario"]["complaints"]
+    assert "must be the name of a file" in complaint["message"]
+    assert complaint["line"]
+
+
+def test_files(folder):
+    session, other = Session(folder), Session(folder)
+    assert session.is_saved("rules")
+    session.do("cell", {"where": WHERE, "says": "S-S"})
+    assert not session.is_saved("rules")
+    with pytest.raises(FolderError, match="must be the name of a file that ends in"):
+        session.save("rules")
+    session.save("rules", "mine.yaml")
+    assert session.state()["rules"]["name"] == "mine.yaml"
+    assert session.is_saved("rules")
+    other.open("rules", "mine.yaml")
+    other.do("cell", {"where": WHERE, "says": "M-M"})
+    other.save("rules")
+    session.do("cell", {"where": WHERE, "says": "Z-Z"})
+    with pytest.raises(FolderError, match="has been changed since"):
+        session.save("rules")
+    with pytest.raises(FolderError, match="exists already"):
+        Session(folder).save("rules", "mine.yaml")
+    session.save("rules", overwrite=True)
+    assert shown(Session(folder, rules="mine.yaml")) == "Z"
+    with pytest.raises(FolderError, match="cannot be opened"):
+        session.open("rules", "none.yaml")
+    with pytest.raises(FolderError, match="none was given"):
+        Session().save("rules", "mine.yaml")
+
+
+def test_differences(folder):
+    session = Session(folder)
+    session.do("cell", {"where": WHERE, "says": "Z-L"})
+    found = session.surfaces(["stiffness"], 5, less="saved").values["stiffness"]
+    assert found[2, 2] == pytest.approx(-0.1)
+    assert abs(found).sum() == pytest.approx(0.1)
+    wide = session.surfaces(["alpha"], 5, less="stiffness-damping-wide")
+    assert abs(wide.values["alpha"]).max() > 0.1
+    session.save("rules", "mine.yaml")
+    assert not session.surfaces(["alpha"], 5, less="saved").values["alpha"].any()
+    assert not session.surfaces(["alpha"], 5, less="mine.yaml").values["alpha"].any()
+
+
+def test_drafts(folder):
+    session = Session(folder, key="a1")
+    assert session.autosave()
+    assert not session.autosave()
+    session.do("cell", {"where": WHERE, "says": "S-S"})
+    assert session.autosave()
+    other = Session(folder, key="a2")
+    other.restore("a1")
+    assert other.texts == session.texts
+    assert shown(other) == "S"
+    assert other.undo()
+    for damaged in ("{", "[]", '{"rules": 3}', json.dumps({"rules": {"name": 1, "text": "x"}})):
+        folder.save_draft("a1", damaged)
+        with pytest.raises(FolderError, match="draft a1: is damaged"):
+            other.restore("a1")
+    assert not Session().autosave()
+
+
+@pytest.mark.parametrize("at", [{}, {"E": 0}, {"E": 0, "dE": "x"}, {"E": 0, "dE": float("nan")}])
+def test_points_are_checked(at):
+    with pytest.raises(ValueError, match="at: must give a number for E, dE; got"):
+        Session().explain(at)
+
+
+def test_the_state_is_json():
+    for name in ("stiffness-damping", "omega-schedule", "maneuver"):
+        state = Session(rules=name).state()
+        assert json.loads(json.dumps(state, allow_nan=False)) == state
