@@ -17,6 +17,7 @@ from fuzzytrack.cli.app import COMMANDS, app
 from fuzzytrack.io.formats import write_table
 from fuzzytrack.io.readers import readers
 from fuzzytrack.normalizations import normalizations
+from fuzzytrack.scan.scanners.roles import ROLES
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.simulation import make_sample
 from fuzzytrack.trackers import trackers
@@ -55,7 +56,8 @@ def a_folder_with_plots(tmp_path, monkeypatch):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 @pytest.mark.usefixtures("a_folder_with_plots")
 def test_python_on_the_page_runs(page, monkeypatch):
-    known = {registry: registry.names() for registry in REGISTRIES}
+    registries = (*REGISTRIES, *ROLES.values())
+    known = {registry: registry.names() for registry in registries}
     rules = ft.load_rulebase("stiffness-damping")
     for name, text in shown_files(page):
         Path(name).write_text(text)
@@ -83,7 +85,7 @@ def test_python_on_the_page_runs(page, monkeypatch):
         for block in blocks(page, "python"):
             exec(compile(block, str(page), "exec"), vars(module))
     finally:
-        for registry in REGISTRIES:
+        for registry in registries:
             for name in set(registry.names()) - set(known[registry]):
                 registry.unregister(name)
 
