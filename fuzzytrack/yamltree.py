@@ -105,11 +105,13 @@ class Node:
         Its characters are ``text[start:end]``.
     anchored : bool
         Whether it carries an anchor, so that aliases repeat it.
+    alias : bool
+        Whether an alias stands in its place.
     size, height : int
         Number of nodes and of levels, after expansion of aliases.
     """
 
-    __slots__ = ("anchored", "column", "end", "height", "line", "size", "start")
+    __slots__ = ("alias", "anchored", "column", "end", "height", "line", "size", "start")
 
     kind = "a value"
 
@@ -119,6 +121,7 @@ class Node:
         self.start: int = event.start_mark.index
         self.end: int = event.end_mark.index
         self.anchored = event.anchor is not None
+        self.alias = False
         self.size = 1
         self.height = 1
 
@@ -127,7 +130,7 @@ class Node:
         twin = copy.copy(self)
         twin.line, twin.column = event.start_mark.line + 1, event.start_mark.column + 1
         twin.start, twin.end = event.start_mark.index, event.end_mark.index
-        twin.anchored = False
+        twin.anchored, twin.alias = False, True
         return twin
 
 

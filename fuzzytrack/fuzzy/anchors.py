@@ -48,7 +48,7 @@ def write_out(
         node = next((n for n in _path(edits, variable, set_name) if _is_shared(edits, n)), None)
         if node is None:
             return EditedText(text, edits.before)
-        if edits.is_alias(node) and len(_aliases(edits, node)) > 1:
+        if node.alias and len(_aliases(edits, node)) > 1:
             _put_copy(edits, node, keep_anchor=False)
         else:
             _pass_on(edits, _source(edits, node))
@@ -68,29 +68,21 @@ def _path(edits: TextEdits, variable: str, set_name: str | None) -> list[Node]:
 
 
 def _is_shared(edits: TextEdits, node: Node) -> bool:
-    return edits.is_alias(node) or (node.anchored and bool(_aliases(edits, node)))
-
-
-def _anchor(edits: TextEdits, node: Node) -> str:
-    """Name of the anchor of a node, or of the one that an alias refers to."""
-    end = edits.content(node) if node.anchored else node.end
-    return edits.text[node.start + 1 : end].strip()
+    return node.alias or (node.anchored and bool(_aliases(edits, node)))
 
 
 def _aliases(edits: TextEdits, node: Node) -> list[Node]:
-    name = _anchor(edits, node)
+    name = edits.anchor(node)
     return [
-        other
-        for other in edits.all_nodes(keys=True)
-        if edits.is_alias(other) and _anchor(edits, other) == name
+        other for other in edits.all_nodes(keys=True) if other.alias and edits.anchor(other) == name
     ]
 
 
 def _source(edits: TextEdits, node: Node) -> Node:
     """The node that has the anchor, for itself and for its aliases."""
-    name = _anchor(edits, node)
+    name = edits.anchor(node)
     nodes = edits.all_nodes(keys=True)
-    return next(n for n in nodes if n.anchored and _anchor(edits, n) == name)
+    return next(n for n in nodes if n.anchored and edits.anchor(n) == name)
 
 
 def _pass_on(edits: TextEdits, node: Node) -> None:
@@ -107,12 +99,12 @@ def _pass_on(edits: TextEdits, node: Node) -> None:
 
 def _put_copy(edits: TextEdits, alias: Node, *, keep_anchor: bool) -> None:
     """Write what an alias refers to in its place."""
-    name = _anchor(edits, alias)
+    name = edits.anchor(alias)
     source = _source(edits, alias)
     start = edits.content(source)
     mark = f"&{name}" if keep_anchor else ""
     if not isinstance(source, Mapping | Sequence) or source.flow:
-        copy = _without_anchors(edits, source, start)
+        copy = edits.current(start, source.end, anchors=False)
         edits.replace(alias.start, alias.end, f"{mark} {copy}".strip())
         return
     parent = _block_parent(edits, alias)
@@ -122,7 +114,7 @@ def _put_copy(edits: TextEdits, alias: Node, *, keep_anchor: bool) -> None:
     start = edits.start_of(source)
     old = edits.margin_at(start)
     new = edits.margin_at(parent) + "  "
-    lines = _without_anchors(edits, source, start).split("\n")
+    lines = edits.current(start, source.end, anchors=False).split("\n")
     moved = [
         new + lines[0],
         *(new + line[min(old.count(" "), _indent(line)) :] for line in lines[1:]),
@@ -137,21 +129,10 @@ def _indent(line: str) -> int:
     return len(line) - len(line.lstrip(" "))
 
 
-def _without_anchors(edits: TextEdits, source: Node, start: int) -> str:
-    """Text of a node; anchors inside it stay with the original."""
-    text = edits.text[start : source.end]
-    inside = [n for n in edits.all_nodes(keys=True) if n.anchored and start <= n.start < source.end]
-    for node in sorted(inside, key=lambda n: -n.start):
-        if node is not source:
-            end = edits.content(node)
-            text = text[: node.start - start] + text[end - start :]
-    return text
-
-
 def _block_parent(edits: TextEdits, alias: Node) -> int | None:
     """Where the key before an alias starts, if it stands in a mapping in block style."""
     for node in edits.all_nodes():
-        if isinstance(node, Mapping) and not node.flow and not edits.is_alias(node):
+        if isinstance(node, Mapping) and not node.flow and not node.alias:
             for key, value in node.entries.values():
                 if value.start == alias.start:
                     return key.start

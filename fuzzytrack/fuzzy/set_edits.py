@@ -293,7 +293,7 @@ def rename_set(
 def _set_numbers(edits: TextEdits, node: ListNode, parameters: tuple[float, ...]) -> None:
     """Put numbers in the place of others, of which there may be more or fewer."""
     numbers = [written(p) for p in parameters]
-    if edits.is_alias(node):
+    if node.alias:
         edits.replace(node.start, node.end, f"[{', '.join(numbers)}]")
         return
     for item, number in zip(node.items, numbers, strict=False):
@@ -369,7 +369,7 @@ def _add_line(edits: TextEdits, name: str, new: str, index: int, model: str) -> 
         rows = _rows(edits).values()
         for items in {id(row.items): row for _, row in rows}.values():
             cell = items.items[place]
-            copy = edits.text[edits.content(cell) : cell.end]
+            copy = edits.current(edits.content(cell), cell.end, anchors=False)
             edits.insert(items, index, copy)
         width = max(_width(row.items[place]) for _, row in rows)
 
@@ -385,7 +385,7 @@ def _add_line(edits: TextEdits, name: str, new: str, index: int, model: str) -> 
     key, row = _rows(edits)[model]
     table = edits.field("rules", "table")
     assert isinstance(table, Mapping)
-    copy = edits.current(edits.content(row), row.end)
+    copy = edits.current(edits.content(row), row.end, anchors=False)
     where = list(table.entries).index(model) + (place < index)
     edits.insert(table, where, _entry(edits, new, (key, row), copy))
 
@@ -445,7 +445,7 @@ def _entry(edits: TextEdits, name: str, beside: tuple[Scalar, Node], value: str)
     word = f"{word_text(name)}:"
     if value.startswith(("\r", "\n")):
         return word + value
-    if other.line != key.line and not edits.is_alias(other) and "\n" in value:
+    if other.line != key.line and not other.alias and "\n" in value:
         return word + edits.text[key.end : other.start].lstrip(" :") + value
     width = other.column - key.column if other.line == key.line else 0
     return word.ljust(max(width, len(word) + 1)) + value
@@ -456,7 +456,7 @@ def _entry(edits: TextEdits, name: str, beside: tuple[Scalar, Node], value: str)
 
 def _rename_word(edits: TextEdits, node: Node, old: str, new: str, offset: int = 0) -> None:
     """Put a name in the place of another, which begins `offset` characters into a word."""
-    if edits.is_alias(node):
+    if node.alias:
         return  # it is renamed where its anchor is
     assert isinstance(node, Scalar)
     start = edits.content(node)

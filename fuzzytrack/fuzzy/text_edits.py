@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.reader import Reader
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.yamltree import Document, Mapping, Node, Scalar, Sequence
+from fuzzytrack.yamltree import Document, Mapping, Node, Sequence
 
 __all__ = ["EditedText", "TextEdits"]
 
@@ -112,13 +112,14 @@ class TextEdits:
             start += 1
         return start
 
-    def is_alias(self, node: Node) -> bool:
-        """Whether an alias stands at the place of a node."""
-        return self.text[node.start] == "*"
+    def anchor(self, node: Node) -> str:
+        """Name of the anchor of a node, or of the one that an alias refers to."""
+        end = self.content(node) if node.anchored else node.end
+        return self.text[node.start + 1 : end].strip()
 
     def all_nodes(self, *, keys: bool = False) -> Iterator[Node]:
         """Nodes in the order in which they stand in the text; what aliases repeat comes once."""
-        yield from _walk(self.document.root, self.text, keys)
+        yield from _walk(self.document.root, keys)
 
     # ---------------------------------------------------------------- changes
 
@@ -126,9 +127,15 @@ class TextEdits:
         """Put other characters in the place of ``text[start:end]``."""
         self._parts[start, end] = new
 
-    def current(self, start: int, end: int) -> str:
-        """Characters of ``text[start:end]`` with the changes inside it made."""
+    def current(self, start: int, end: int, *, anchors: bool = True) -> str:
+        """Characters of ``text[start:end]`` with the changes inside it made.
+
+        A copy is made without `anchors`, which stay with the original.
+        """
         inside = {span: new for span, new in self._parts.items() if start <= span[0] <= end}
+        if not anchors:
+            nodes = (n for n in self.all_nodes(keys=True) if n.anchored and start <= n.start < end)
+            inside |= {(n.start, self.content(n)): "" for n in nodes}
         text = self.text[:end]
         for (first, last), new in sorted(inside.items(), reverse=True):
             text = text[:first] + new + text[last:]
@@ -218,8 +225,29 @@ class TextEdits:
         RuleBaseError
             If the changed text is no rule base; the place is one in the changed text.
         """
+        self._check_anchors()
         text = self.current(0, len(self.text))
         return self._mark + text, loads_rulebase(text, self._file)
+
+    def _check_anchors(self) -> None:
+        """Check that no anchor goes to which an alias refers that stays."""
+        gone = [(start, end) for start, end in self._parts if end > start]
+        nodes = list(self.all_nodes(keys=True))
+
+        def goes(node: Node) -> bool:
+            return any(start <= node.start < end for start, end in gone)
+
+        for node in nodes:
+            name = self.anchor(node) if node.anchored and goes(node) else None
+            if name is None or any(f"&{name}" in new for new in self._parts.values()):
+                continue
+            for other in nodes:
+                if other.alias and self.anchor(other) == name and not goes(other):
+                    raise self.document.error(
+                        node,
+                        f"the anchor &{name} is in what is to be changed, and *{name} in line "
+                        f"{other.line} repeats it: write it out there first",
+                    )
 
     def result(
         self, expected: RuleBase, node: Node, what: str, also: Iterable[tuple[str, str]] = ()
@@ -251,16 +279,16 @@ class TextEdits:
         return EditedText(text, after, also)
 
 
-def _walk(node: Node, text: str, keys: bool) -> Iterator[Node]:
-    """A node and those below it, without recursion into what an alias repeats."""
+def _walk(node: Node, keys: bool) -> Iterator[Node]:
+    """A node and those below it, but for those that an alias repeats."""
     yield node
-    if text[node.start : node.start + 1] == "*" and not isinstance(node, Scalar):
+    if node.alias:
         return
     if isinstance(node, Mapping):
         for key, value in node.entries.values():
             if keys:
                 yield key
-            yield from _walk(value, text, keys)
+            yield from _walk(value, keys)
     elif isinstance(node, Sequence):
         for item in node.items:
-            yield from _walk(item, text, keys)
+            yield from _walk(item, keys)

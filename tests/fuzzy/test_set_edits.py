@@ -211,6 +211,30 @@ def test_written_out():
     assert write_out(crlf, "dE") == write_out(SEVEN, "dE").replace("\n", "\r\n")
 
 
+@pytest.mark.usefixtures("parser")
+def test_both_parsers_place_anchors_alike():
+    assert set_shape(SEVEN, "dE", "ze", [-0.2, 0, 0.2]).also == (("E", "ze"),)
+    assert "&seven" not in write_out(SEVEN, "E")
+    text = TABLE.replace("ze: [S-S,", "ze: [&c S-S,").replace("po: [L-S,", "po: [*c,")
+    assert "&c s-S" in rename_set(text, "power", "S", "s")
+
+
+def test_anchors_of_keys_and_of_copied_cells():
+    text = changed(SEVEN, "label: normalized error\n", "&k label: normalized error\n")
+    text = changed(text, "label: normalized error rate", "*k : normalized error rate")
+    assert "&seven" not in write_out(text, "E")
+    text = SEVEN.replace("ze: [Z-Z, S-S, M-M", "ze: [Z-Z, &c S-S, M-M").replace(
+        "ps: [M-Z, S-Z, M-M", "ps: [M-Z, S-Z, *c"
+    )
+    edited = add_set(text, "E", FuzzySet("zz", "trimf", (0, 0.01, 0.02)))
+    assert "    zz: [Z-Z, S-S, M-M" in edited
+    assert remove_set(edited, "E", "zz", with_rules=True) == text
+    with pytest.raises(
+        RuleBaseError, match=r"the anchor &c is in what is .* \*c in line 56 repeats"
+    ):
+        remove_set(text, "E", "nm", with_rules=True)
+
+
 def test_of_three_that_share_two_go_on_sharing():
     sets = "{S: {trimf: [0, 0, 2]}, L: {trimf: [0, 2, 2]}}"
     text = TABLE.replace(f"power: {{universe: [0, 2, 21], sets: {sets}}}",
