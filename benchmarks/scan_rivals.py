@@ -156,7 +156,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep tracks, and use them")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.json", help="write all figures")
     given = parser.parse_args(arguments)
-    peers = {name: shipped(name) for name in CONFIGURATIONS}
+    # Differences are against the first.
+    names = sorted(CONFIGURATIONS, key=lambda name: name != "default")
+    peers = {name: shipped(name) for name in names}
     peers["default, told"] = shipped(TOLD)
     for name in filter(None, given.peers.split(",")):
         peers[f"Stone Soup {name}"] = stonesoup(ASSOCIATIONS[name])
