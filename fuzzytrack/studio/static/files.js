@@ -1,0 +1,236 @@
+/* The bar at the top: the name of the rule base, open, save, undo, redo, export, looks, help. */
+
+import { PALETTES } from "./colors.js";
+import { html } from "./elements.js";
+import { icon } from "./icons.js";
+import { menu } from "./menu.js";
+import { download } from "./pictures.js";
+
+const KEYS = [
+  ["Ctrl S", "save"],
+  ["Ctrl O", "open"],
+  ["Ctrl Z, Ctrl Shift Z", "undo, redo"],
+  ["Arrows", "move in the table; turn the surface; move the point in the contours"],
+  ["Enter, F2 or a letter", "type in a cell; Enter keeps it, Esc leaves it"],
+  ["+ and −", "next and previous set of the colored output in a cell; zoom of the surface"],
+  ["Arrows on a corner of a set", "move it, with Shift ten times as far; Esc takes it back"],
+  ["Alt while dragging", "no snapping"],
+  ["Shift Arrows on the surface", "move the explained point"],
+  ["?", "these keys"],
+];
+
+export function mount(element, app) {
+  const { store, socket, say } = app;
+  const name = html("button", { type: "button", class: "name", title: "Save under a name", onclick: saveAs });
+  const saved = html("span", { class: "saved" });
+  const undo = tool("undo", "Undo (Ctrl Z)", () => app.edit("undo"));
+  const redo = tool("redo", "Redo (Ctrl Shift Z)", () => app.edit("redo"));
+
+  element.append(
+    html("h1", {}, "fuzzytrack ", html("span", {}, "studio")),
+    html("span", { class: "document" }, name, saved),
+    tool("open", "Open (Ctrl O)", open, "Open"),
+    tool("save", "Save (Ctrl S)", save, "Save"),
+    undo,
+    redo,
+    html("span", { class: "space" }),
+    menu("Export", html("span", {}, "Export"), exports),
+    menu("Colors and brightness", icon("scheme"), looks, { class: "quiet" }),
+    tool("help", "Keys (?)", help),
+  );
+
+  function tool(picture, title, run, text) {
+    const attributes = { type: "button", title, onclick: run, "aria-label": text ? null : title };
+    return html("button", { ...attributes, class: text ? null : "quiet" }, icon(picture), text);
+  }
+
+  // ------------------------------------------------------------------ open and save
+
+  function open() {
+    const { files, shipped, state } = store.now;
+    const rulebases = files.filter(({ kind }) => kind === "rules");
+    const entry = (kind) => (one) =>
+      html(
+        "button",
+        {
+          type: "button",
+          class: "entry",
+          onclick: async () => {
+            dialog.close();
+            if (await app.edit("open", { name: one })) say(`${one} is open.`);
+          },
+        },
+        html("span", {}, one),
+        html("small", {}, kind),
+      );
+    const list = html(
+      "div",
+      { class: "entries" },
+      ...rulebases.map((file) => entry("in the folder")(file.name)),
+      ...shipped.map(entry("shipped")),
+    );
+    const filter = html("input", {
+      type: "search",
+      placeholder: "Filter",
+      "aria-label": "Filter the names",
+      oninput: () => {
+        for (const one of list.children) one.hidden = !one.textContent.includes(filter.value);
+      },
+    });
+    const warning = state.saved
+      ? null
+      : html("p", { class: "warning" }, "What is open has changes that are not saved. They stay in undo.");
+    const dialog = ask("Open a rule base", [filter, warning, list], []);
+    filter.focus();
+  }
+
+  async function save() {
+    const { file } = store.now.state;
+    if (!file) saveAs();
+    else await saveTo(file, false);
+  }
+
+  function saveAs() {
+    const { state } = store.now;
+    const box = html("input", { type: "text", spellcheck: "false", "aria-label": "Name of the file" });
+    box.value = state.file ?? `${state.name}.yaml`;
+    const dialog = ask(
+      "Save the rule base in the folder",
+      [box],
+      [["Save", () => saveTo(box.value.trim(), false)]],
+    );
+    box.focus();
+    box.setSelectionRange(0, box.value.replace(/\.ya?ml$/, "").length);
+  }
+
+  async function saveTo(file, overwrite) {
+    const done = await app.edit("save", { name: file, overwrite }, ({ message }) => {
+      if (overwrite) say(message, "error");
+      else {
+        ask("It was not saved", [html("p", {}, message)], [
+          ["Save under another name", saveAs],
+          ["Overwrite", () => saveTo(file, true)],
+        ]);
+      }
+    });
+    if (!done) return;
+    say(`Saved as ${store.now.state.file}.`);
+    const { files } = await socket.send("files");
+    store.set({ files });
+  }
+
+  // ------------------------------------------------------------------ menus
+
+  function exports() {
+    const { state } = store.now;
+    const file = state.file ?? `${state.name}.yaml`;
+    const asked = [
+      ["snippet", { what: "python" }, "Python that loads it"],
+      ["snippet", { what: "command" }, "Command line"],
+      ["report", {}, "Report (HTML)"],
+    ];
+    return [
+      { text: "YAML", note: file, run: () => download(file, state.text, "application/yaml") },
+      ...asked
+        .filter(([command]) => app.can(command))
+        .map(([command, args, text]) => ({ text, run: () => fetchText(command, args, text) })),
+    ];
+  }
+
+  async function fetchText(command, args, text) {
+    try {
+      const found = await socket.send(command, args);
+      if (command === "report") download(found.name, found.text, "text/html");
+      else showText(text, found.text);
+    } catch (error) {
+      say(error.message, "error");
+    }
+  }
+
+  function showText(heading, text) {
+    ask(heading, [html("pre", { class: "snippet", tabindex: 0 }, text)], [
+      [
+        "Copy",
+        () => navigator.clipboard.writeText(text).then(
+          () => say("Copied."),
+          () => say("The browser does not let the page copy: select the text and press Ctrl C.", "error"),
+        ),
+      ],
+    ]);
+  }
+
+  function looks() {
+    const { scheme, palette } = store.now;
+    const mark = (text, chosen) => (chosen ? `${text} ✓` : text);
+    return [
+      { heading: "Brightness" },
+      ...["as the system", "light", "dark"].map((one, k) => {
+        const value = k ? one : null;
+        return { text: mark(one, app.wantedScheme() === value), run: () => app.setScheme(value) };
+      }),
+      { heading: `Colors of values, on ${scheme}` },
+      ...PALETTES.map((one) => ({ text: mark(one, palette === one), run: () => store.set({ palette: one }) })),
+    ];
+  }
+
+  function help() {
+    const rows = KEYS.map(([keys, text]) => html("tr", {}, html("th", { scope: "row" }, html("kbd", {}, keys)), html("td", {}, text)));
+    ask("Keys", [html("table", { class: "keys" }, html("tbody", {}, rows))], []);
+  }
+
+  store.follow(["state"], ({ state }) => {
+    if (!state) return;
+    name.textContent = state.name;
+    saved.textContent = state.saved ? (state.file ? "saved" : "as shipped") : "not saved";
+    saved.classList.toggle("changed", !state.saved);
+    undo.disabled = !state.undo;
+    redo.disabled = !state.redo;
+    document.title = `${state.saved ? "" : "• "}${state.name} – fuzzytrack studio`;
+  });
+
+  return { open, save, help };
+}
+
+/** A dialog with buttons [text, run]; the last one is the one that Enter presses. */
+export function ask(heading, content, actions) {
+  const dialog = html(
+    "dialog",
+    { "aria-label": heading, onclose: () => dialog.remove() },
+    html(
+      "form",
+      {
+        method: "dialog",
+        onsubmit: (event) => {
+          event.preventDefault();
+          dialog.close();
+          actions.at(-1)?.[1]();
+        },
+      },
+      html("h2", {}, heading),
+      content,
+      html(
+        "div",
+        { class: "buttons" },
+        html("button", { type: "button", onclick: () => dialog.close() }, actions.length ? "Cancel" : "Close"),
+        actions.map(([text, run], k) =>
+          html(
+            "button",
+            k === actions.length - 1
+              ? { type: "submit", class: "primary" }
+              : {
+                  type: "button",
+                  onclick: () => {
+                    dialog.close();
+                    run();
+                  },
+                },
+            text,
+          ),
+        ),
+      ),
+    ),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+  return dialog;
+}

@@ -1,0 +1,135 @@
+/* Start of the page: the connection, the store, the views, the keys of the whole page. */
+
+import { makeEdits } from "./edits.js";
+import { choice, html } from "./elements.js";
+import { followPoint } from "./explain.js";
+import * as files from "./files.js";
+import { connect } from "./socket.js";
+import { makeStore } from "./store.js";
+import { followValues } from "./values.js";
+import { isShown, mountViews } from "./views.js";
+
+const INITIAL = {
+  // From the server.
+  connected: false, session: null, hello: null, state: null, files: [], shipped: [], values: null,
+  valuesError: null, explanation: null, gains: null, visits: null, runs: 0,
+  // What is looked at.
+  view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
+  against: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
+  // How.
+  points: 61, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
+  shadeVisits: false, palette: "viridis", scheme: "light",
+};
+const KEPT = [
+  "session", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "point", "camera",
+  "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
+];
+const SCHEME = "fuzzytrack scheme";
+
+const store = makeStore(INITIAL, KEPT, "fuzzytrack");
+const status = document.getElementById("status");
+const message = html("span", { class: "message", role: "status", "aria-live": "polite" });
+const line = html("span", { class: "line" });
+status.append(line, message);
+
+/** Say something in the line at the bottom; `kind` is "error" for what went wrong. */
+function say(text, kind = "note") {
+  message.textContent = text;
+  message.className = `message ${kind}`;
+}
+
+const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
+const socket = connect(token, heard);
+const { edit, drawn } = makeEdits(socket, store, say);
+const app = {
+  socket, store, say, edit, drawn, isShown, tabs,
+  can: (command) => store.now.hello?.commands?.includes(command) ?? false,
+  show: (change) => store.set({ view: "design", ...change }),
+  wantedScheme: () => localStorage.getItem(SCHEME),
+  setScheme,
+};
+Object.assign(app, followPoint(app));
+followValues(app);
+
+/** Tabs of the rules: the table, or the text it stands in. */
+function tabs() {
+  const element = choice("Rules as", (tab) => store.set({ tab }));
+  store.follow(["tab"], ({ tab }) => element.show([["table", "Table"], ["text", "Text"]], tab));
+  return element.element;
+}
+
+// ---------------------------------------------------------------------- the server
+
+function heard(event, news) {
+  if (event === "open") greet();
+  else if (event === "close") store.set({ connected: false });
+  else if (event === "notice") say(news.text, "error");
+  else if (event === "job") store.set({ job: news.job });
+}
+
+async function greet() {
+  try {
+    const hello = await socket.send("hello", { session: store.now.session });
+    const { session, state, files: found, shipped } = hello;
+    store.set({ hello, session, state, files: found, shipped, connected: true });
+    document.body.classList.add("ready");
+    seeVisits();
+  } catch (error) {
+    say(error.message, "error");
+  }
+}
+
+/** Where the last run went, for the shading of surfaces. */
+async function seeVisits() {
+  if (!app.can("visits")) return;
+  const visits = await socket.send("visits").catch(() => null);
+  store.set({ visits: visits?.counts?.length ? visits : null });
+}
+
+store.follow(["job"], ({ job }) => {
+  if (job?.kind !== "run" || job.state !== "done") return;
+  store.set({ runs: store.now.runs + 1 });
+  seeVisits();
+});
+
+store.follow(["connected", "hello"], ({ connected, hello }) => {
+  line.textContent = connected ? "connected" : hello ? "no connection: trying again" : "connecting";
+  line.classList.toggle("off", !connected);
+});
+
+// ---------------------------------------------------------------------- looks
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+
+function setScheme(wanted) {
+  if (wanted) localStorage.setItem(SCHEME, wanted);
+  else localStorage.removeItem(SCHEME);
+  const scheme = wanted ?? (dark.matches ? "dark" : "light");
+  document.documentElement.dataset.scheme = scheme;
+  store.set({ scheme });
+}
+
+setScheme(app.wantedScheme());
+dark.addEventListener("change", () => setScheme(app.wantedScheme()));
+
+// ---------------------------------------------------------------------- the page
+
+const bar = files.mount(document.getElementById("bar"), app);
+mountViews(document.getElementById("rail"), document.getElementById("main"), app);
+
+document.addEventListener("keydown", (event) => {
+  // Numbers are kept as soon as they are typed, so undo in their fields is that of the page.
+  const typing = event.target.matches?.("input:not(.number, [type=checkbox]), textarea");
+  const key = event.key.toLowerCase();
+  if (event.ctrlKey || event.metaKey) {
+    const run = {
+      s: bar.save,
+      o: bar.open,
+      z: typing ? null : () => edit(event.shiftKey ? "redo" : "undo"),
+      y: typing ? null : () => edit("redo"),
+    }[key];
+    if (!run || document.querySelector("dialog[open]")) return;
+    event.preventDefault();
+    run();
+  } else if (event.key === "?" && !typing && !event.target.closest("[role=gridcell]")) bar.help();
+});

@@ -1,0 +1,471 @@
+/* The surface in three dimensions: turned by mouse and keys, clicked for an explanation. */
+
+import { axisOf, drawAxes, drawColorBar } from "./axes.js";
+import { color, css, mix, token } from "./colors.js";
+import { check, choice, html, select } from "./elements.js";
+import { icon } from "./icons.js";
+import { shown, span, ticks } from "./numbers.js";
+import { pictureMenu } from "./pictures.js";
+import { drawable, signOf } from "./rulebase.js";
+import { makeStage } from "./stage.js";
+
+export const title = "Surface";
+const HEIGHT = 0.85;
+const HOME = { azimuth: -125, elevation: 30, zoom: 1 };
+const POINTS = [31, 61, 121, 201];
+// From the viewer's upper left, in (right, up, toward the viewer).
+const LIGHT = [-0.42, 0.55, 0.72];
+
+export function mount(element, app) {
+  const { store } = app;
+  const canvas = html("canvas", {
+    tabindex: 0,
+    role: "application",
+    "aria-roledescription": "surface in three dimensions",
+    "aria-describedby": "surface-keys",
+  });
+  const note = html("p", { class: "note", hidden: true });
+  const outputs = choice("Output that is shown", (shown) => store.set({ shown }));
+  const against = html("span");
+  const stage = makeStage(canvas, draw, () => app.drawn(store.now.values?.version ?? -1));
+
+  element.append(
+    html(
+      "header",
+      {},
+      html("h2", {}, title),
+      outputs.element,
+      html("span", { class: "space" }),
+      html(
+        "button",
+        { type: "button", class: "quiet", title: "Turn back (0)", "aria-label": "Turn back", onclick: home },
+        icon("home"),
+      ),
+      pictureMenu("the surface", () => `${store.now.state.name}-${store.now.shown}`, stage.file),
+    ),
+    html(
+      "div",
+      { class: "tools" },
+      against,
+      html("span", { class: "visits-check" }),
+      html("span", { class: "space" }),
+      select(
+        "Points on each axis",
+        POINTS.map((n) => [n, `${n} × ${n}`]),
+        store.now.points,
+        (points) => store.set({ points: Number(points) }),
+      ),
+    ),
+    html("div", { class: "canvas" }, canvas, note),
+    html(
+      "p",
+      { id: "surface-keys", class: "unseen" },
+      "Arrow keys turn, plus and minus zoom, 0 turns back. Shift and arrow keys move the explained point.",
+    ),
+  );
+
+  function draw(pen, width, height) {
+    const { values } = store.now;
+    if (!values) return;
+    if (values.rows === 1) drawCurve(pen, width, height, values, store.now.point);
+    else new Painter(store.now, width, height).draw(pen);
+  }
+
+  function home() {
+    store.set({ camera: HOME });
+  }
+
+  function turn(azimuth, elevation) {
+    const { camera } = store.now;
+    store.set({
+      camera: {
+        ...camera,
+        azimuth: (camera.azimuth + azimuth) % 360,
+        elevation: Math.max(4, Math.min(90, camera.elevation + elevation)),
+      },
+    });
+  }
+
+  function zoom(factor) {
+    const { camera } = store.now;
+    store.set({ camera: { ...camera, zoom: Math.max(0.5, Math.min(4, camera.zoom * factor)) } });
+  }
+
+  function explain(event) {
+    const { values, state } = store.now;
+    if (!values) return;
+    const place = [event.offsetX, event.offsetY];
+    const size = [canvas.clientWidth, canvas.clientHeight];
+    const at =
+      values.rows === 1 ? onCurve(place, size, values) : new Painter(store.now, ...size).pick(...place);
+    if (at) app.explain(Object.fromEntries(values.axes.map(({ name }, k) => [name, at[k]])), state);
+  }
+
+  let grip = null;
+  canvas.addEventListener("pointerdown", (event) => {
+    if (event.button) return;
+    canvas.setPointerCapture(event.pointerId);
+    grip = { x: event.clientX, y: event.clientY, turned: false };
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!grip) return;
+    const [right, down] = [event.clientX - grip.x, event.clientY - grip.y];
+    if (!grip.turned && Math.hypot(right, down) < 4) return;
+    turn(-0.5 * right, 0.4 * down);
+    grip = { x: event.clientX, y: event.clientY, turned: true };
+  });
+  canvas.addEventListener("pointerup", (event) => {
+    if (grip && !grip.turned) explain(event);
+    grip = null;
+  });
+  canvas.addEventListener("pointercancel", () => (grip = null));
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      if (document.activeElement !== canvas) return;
+      event.preventDefault();
+      zoom(event.deltaY < 0 ? 1.08 : 1 / 1.08);
+    },
+    { passive: false },
+  );
+  canvas.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[
+      event.key
+    ];
+    if (step && event.shiftKey) app.stepPoint(...step);
+    else if (step) turn(-5 * step[0], 5 * step[1]);
+    else if (event.key === "+" || event.key === "=") zoom(1.1);
+    else if (event.key === "-") zoom(1 / 1.1);
+    else if (event.key === "0" || event.key === "Home") home();
+    else if (event.key === "Enter") app.stepPoint(0, 0);
+    else return;
+    event.preventDefault();
+  });
+
+  store.follow(["state", "shown"], ({ state, shown }) => {
+    const { rulebase } = state ?? {};
+    const labels = Object.fromEntries(rulebase?.outputs.map((one) => [one.name, one.label]) ?? []);
+    outputs.show(
+      drawable(rulebase).map((name) => [name, signOf(name), labels[name]]),
+      shown,
+    );
+  });
+  store.follow(["files", "shipped", "against"], ({ files, shipped, against: chosen }) => {
+    const names = [...files.filter(({ kind }) => kind === "rules").map(({ name }) => name), ...shipped];
+    const options = [["", "no difference"], ["saved", "minus what was saved"]];
+    against.replaceChildren(
+      select(
+        "Difference to another rule base",
+        [...options, ...names.map((name) => [name, `minus ${name}`])],
+        chosen ?? "",
+        (name) => store.set({ against: name || null }),
+      ),
+    );
+  });
+  store.follow(["visits", "shadeVisits"], ({ visits, shadeVisits }) => {
+    element.querySelector(".visits-check").replaceChildren(
+      ...(visits
+        ? [
+            check("visits", shadeVisits, (on) => store.set({ shadeVisits: on }),
+              "Colors where the last run was; gray where it never came"),
+          ]
+        : []),
+    );
+  });
+  store.follow(["values", "valuesError"], ({ values, valuesError }) => {
+    const empty = values?.heights.some(Number.isNaN);
+    note.hidden = !(valuesError || empty);
+    note.textContent = valuesError ?? "In the holes no rule fires.";
+    const [low, high] = values ? span(values.heights) : [NaN, NaN];
+    const over = values?.axes.map(({ name }) => name).join(" and ");
+    canvas.setAttribute(
+      "aria-label",
+      values
+        ? `${values.output} over ${over}, from ${shown(low)} to ${shown(high)}`
+        : "No surface: the rule base has complaints",
+    );
+  });
+  store.follow(
+    ["values", "camera", "point", "palette", "scheme", "visits", "shadeVisits", "view"],
+    stage.redraw,
+  );
+}
+
+/** The range of the colors; differences have 0 in the middle. */
+export function rangeOf(values) {
+  const [low, high] = span(values.heights);
+  if (!values.against) return [low, high];
+  const most = Math.max(Math.abs(low), Math.abs(high));
+  return [-most, most];
+}
+
+export function paletteOf(values, palette) {
+  return values.against ? "difference" : palette;
+}
+
+/** Share of a visited place from 0 to 1, on a logarithmic scale; null without visits. */
+export function visitShares(visits) {
+  if (!visits) return null;
+  const { counts } = visits;
+  const most = Math.log1p(Math.max(1, ...counts.flat()));
+  return (x, y) => {
+    const row = counts[Math.round(y * (counts.length - 1))];
+    return Math.log1p(row[Math.round(x * (row.length - 1))]) / most;
+  };
+}
+
+class Painter {
+  constructor({ values, camera, point, palette, visits, shadeVisits }, width, height) {
+    Object.assign(this, { values, width, height, point });
+    this.palette = paletteOf(values, palette);
+    this.range = rangeOf(values);
+    this.share = shadeVisits ? visitShares(visits) : null;
+    this.#look(camera);
+  }
+
+  #look({ azimuth, elevation, zoom }) {
+    const [a, e] = [azimuth, elevation].map((degrees) => (degrees * Math.PI) / 180);
+    this.toward = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
+    this.right = [-Math.sin(a), Math.cos(a), 0];
+    this.up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
+    const tall = Math.SQRT2 * Math.sin(e) + HEIGHT * Math.cos(e);
+    const [wide, high] = [this.width - 150, this.height - 76];
+    this.scale = zoom * Math.max(8, Math.min(wide / 2 / Math.SQRT2, high / 2 / tall));
+    this.center = [(this.width - 46) / 2, this.height / 2 - 8];
+    this.near = this.toward.map((part) => (part >= 0 ? 1 : -1));
+    this.light = [0, 1, 2].map(
+      (k) => LIGHT[0] * this.right[k] + LIGHT[1] * this.up[k] + LIGHT[2] * this.toward[k],
+    );
+  }
+
+  /** Place on the screen of a point of the box [-1, 1] × [-1, 1] × [-HEIGHT, HEIGHT]. */
+  at(x, y, z) {
+    const { right, up, scale, center } = this;
+    return [
+      center[0] + scale * (right[0] * x + right[1] * y),
+      center[1] - scale * (up[0] * x + up[1] * y + up[2] * z),
+    ];
+  }
+
+  /** Height in the box of a value. */
+  level(value) {
+    const [low, high] = this.range;
+    return HEIGHT * ((2 * (value - low)) / (high - low) - 1);
+  }
+
+  draw(pen) {
+    this.#walls(pen);
+    this.#faces(pen);
+    this.#pin(pen);
+    this.#labels(pen);
+    const high = Math.min(180, this.height - 90);
+    const box = { left: this.width - 54, top: 32, height: high };
+    drawColorBar(pen, box, this.palette, this.range, signOf(this.values.output));
+  }
+
+  #walls(pen) {
+    const [fill, line] = [token("--wall"), token("--wall-line")];
+    const [bx, by] = [-this.near[0], -this.near[1]];
+    const face = (...corners) => corners.flatMap((corner) => this.at(...corner));
+    const h = HEIGHT;
+    pen.polygon(face([-1, -1, -h], [1, -1, -h], [1, 1, -h], [-1, 1, -h]), fill, line, 1);
+    pen.polygon(face([bx, -1, -h], [bx, 1, -h], [bx, 1, h], [bx, -1, h]), fill, line, 1);
+    pen.polygon(face([-1, by, -h], [1, by, -h], [1, by, h], [-1, by, h]), fill, line, 1);
+    for (const x of this.#ticks(0)) pen.line(face([x, by, h], [x, by, -h], [x, -by, -h]), line);
+    for (const y of this.#ticks(1)) pen.line(face([bx, y, h], [bx, y, -h], [-bx, y, -h]), line);
+    for (const value of ticks(...this.range, 4)) {
+      const z = this.level(value);
+      pen.line(face([-bx, by, z], [bx, by, z], [bx, -by, z]), line);
+    }
+  }
+
+  /** Places in the box of the ticks of an input. */
+  #ticks(axis) {
+    const { low, high } = axisOf(this.values.axes[axis]);
+    return ticks(low, high, 5).map((value) => (2 * (value - low)) / (high - low) - 1);
+  }
+
+  /** Faces from the farthest to the nearest, which hides what lies behind without sorting. */
+  #faces(pen) {
+    const { palette, share } = this;
+    const { columns, rows, heights } = this.values;
+    const [low, high] = this.range;
+    const { places, levels } = this.#project();
+    const [line, gray] = [token("--mesh"), [150, 150, 150]];
+    const step = Math.max(1, Math.round((columns - 1) / 20));
+    this.#eachFace((i, j) => {
+      const a = j * columns + i;
+      const [b, c, d] = [a + 1, a + columns + 1, a + columns];
+      const mean = (heights[a] + heights[b] + heights[c] + heights[d]) / 4;
+      if (Number.isNaN(mean)) return;
+      const corner = [a, b, c, d].flatMap((k) => [places[2 * k], places[2 * k + 1]]);
+      let paint = color(palette, (mean - low) / (high - low));
+      if (share) {
+        const seen = share((i + 0.5) / (columns - 1), (j + 0.5) / (rows - 1));
+        paint = mix(gray, paint, seen ? 0.3 + 0.7 * seen : 0);
+      }
+      const fill = css(paint, this.#brightness(levels, a, b, c, d));
+      pen.polygon(corner, fill, fill, 0.8);
+      if (j % step === 0) pen.line(corner.slice(0, 4), line, 0.6);
+      if (i % step === 0) pen.line([...corner.slice(0, 2), ...corner.slice(6)], line, 0.6);
+    });
+  }
+
+  #eachFace(visit) {
+    const { columns, rows } = this.values;
+    const order = (count, near) =>
+      Array.from({ length: count - 1 }, (_, k) => (near > 0 ? k : count - 2 - k));
+    const across = order(columns, this.near[0]);
+    for (const j of order(rows, this.near[1])) for (const i of across) visit(i, j);
+  }
+
+  #project() {
+    const { columns, rows, heights } = this.values;
+    const places = new Float32Array(2 * heights.length);
+    const levels = new Float32Array(heights.length);
+    for (let k = 0; k < heights.length; k += 1) {
+      levels[k] = this.level(heights[k]);
+      const [x, y] = [k % columns, Math.floor(k / columns)];
+      const place = this.at((2 * x) / (columns - 1) - 1, (2 * y) / (rows - 1) - 1, levels[k]);
+      places[2 * k] = place[0];
+      places[2 * k + 1] = place[1];
+    }
+    return { places, levels };
+  }
+
+  /** How bright a face is: its normal against the light. */
+  #brightness(levels, a, b, c, d) {
+    const { columns, rows } = this.values;
+    const slopeX = ((levels[b] + levels[c] - levels[a] - levels[d]) * (columns - 1)) / 4;
+    const slopeY = ((levels[c] + levels[d] - levels[a] - levels[b]) * (rows - 1)) / 4;
+    const length = Math.sqrt(1 + slopeX * slopeX + slopeY * slopeY);
+    const cosine = (this.light[2] - this.light[0] * slopeX - this.light[1] * slopeY) / length;
+    return 0.66 + 0.4 * Math.max(0, cosine);
+  }
+
+  /** The explained point: a pin from the floor to the surface. */
+  #pin(pen) {
+    const spot = this.point && spotOf(this.values, this.point);
+    if (!spot) return;
+    const [x, y] = spot.shares.map((part) => 2 * part - 1);
+    const [foot, head] = [this.at(x, y, -HEIGHT), this.at(x, y, this.level(spot.height))];
+    pen.line([...foot, ...head], token("--halo"), 3.5);
+    pen.line([...foot, ...head], token("--pin"), 1.5);
+    pen.circle(...head, 5, token("--pin"), token("--halo"), 2);
+  }
+
+  #labels(pen) {
+    const [muted, ink] = [token("--muted"), token("--ink")];
+    this.values.axes.forEach((one, axis) => {
+      const { low, high, name } = axisOf(one);
+      const edge = (share, out) => {
+        const along = 2 * share - 1;
+        const beside = this.near[1 - axis] * out;
+        return axis === 0 ? this.at(along, beside, -HEIGHT) : this.at(beside, along, -HEIGHT);
+      };
+      const align = edge(0.5, 1)[0] < this.center[0] ? "end" : "start";
+      for (const value of ticks(low, high, 5)) {
+        const share = (value - low) / (high - low);
+        pen.line([...edge(share, 1), ...edge(share, 1.04)], muted);
+        const [x, y] = edge(share, 1.08);
+        pen.text(x, y + 5, shown(value), { fill: muted, align });
+      }
+      const [x, y] = edge(0.5, 1.08);
+      const aside = align === "end" ? -24 : 24;
+      pen.text(x + aside, y + 20, name, { fill: ink, align, size: 13, weight: 600 });
+    });
+    this.#heights(pen, muted);
+  }
+
+  /** Numbers of the vertical axis, at the edge of the box that is farthest left. */
+  #heights(pen, muted) {
+    const [nx, ny] = this.near;
+    const edges = [[nx, -ny], [-nx, ny]];
+    const [x, y] = edges.sort((one, two) => this.at(...one, 0)[0] - this.at(...two, 0)[0])[0];
+    for (const value of ticks(...this.range, 4)) {
+      const [left, top] = this.at(x, y, this.level(value));
+      pen.line([left - 4, top, left, top], muted);
+      pen.text(left - 7, top, shown(value), { fill: muted, align: "end" });
+    }
+  }
+
+  /** Values of the inputs under a place of the screen, on the nearest face there; or null. */
+  pick(left, top) {
+    const { columns, rows, axes, heights } = this.values;
+    const { places } = this.#project();
+    let found = null;
+    this.#eachFace((i, j) => {
+      const a = j * columns + i;
+      const face = [a, a + 1, a + columns + 1, a + columns];
+      if (face.some((k) => Number.isNaN(heights[k]))) return;
+      // The last face that covers the place is the nearest.
+      if (covers(face.map((k) => [places[2 * k], places[2 * k + 1]]), left, top)) found = [i, j];
+    });
+    if (!found) return null;
+    const shares = [(found[0] + 0.5) / (columns - 1), (found[1] + 0.5) / (rows - 1)];
+    return shares.map((share, k) => {
+      const [low, high] = axes[k].universe;
+      return low + share * (high - low);
+    });
+  }
+}
+
+function covers(corners, x, y) {
+  let inside = false;
+  corners.forEach(([x1, y1], k) => {
+    const [x2, y2] = corners[(k + 1) % corners.length];
+    if (y1 > y !== y2 > y && x < ((x2 - x1) * (y - y1)) / (y2 - y1) + x1) inside = !inside;
+  });
+  return inside;
+}
+
+/** Where a point lies on the drawn surface: shares of the axes, and the height there. */
+export function spotOf({ axes, columns, rows, heights }, point) {
+  const shares = axes.map(({ name, universe: [low, high] }) =>
+    Math.max(0, Math.min(1, (point[name] - low) / (high - low))),
+  );
+  if (shares.some(Number.isNaN)) return null;
+  const [x, y] = [shares[0] * (columns - 1), (shares[1] ?? 0) * (rows - 1)];
+  const [i, j] = [Math.min(columns - 2, Math.floor(x)), Math.max(0, Math.min(rows - 2, Math.floor(y)))];
+  const row = (k) => {
+    const start = Math.min(rows - 1, k) * columns + i;
+    return heights[start] + (heights[start + 1] - heights[start]) * (x - i);
+  };
+  const height = row(j) + (row(j + 1) - row(j)) * (y - j);
+  return Number.isNaN(height) ? null : { shares, height };
+}
+
+// ------------------------------------------------------------------ one input
+
+function curveBox(width, height) {
+  return { left: 58, top: 20, width: width - 80, height: height - 64 };
+}
+
+function drawCurve(pen, width, height, values, point) {
+  const [low, high] = rangeOf(values);
+  const margin = 0.05 * (high - low);
+  const box = curveBox(width, height);
+  const label = signOf(values.output);
+  const axis = axisOf(values.axes[0]);
+  const place = drawAxes(pen, box, axis, { low: low - margin, high: high + margin, label, name: label });
+  const line = [];
+  values.heights.forEach((value, k) => {
+    const x = axis.low + (k / (values.columns - 1)) * (axis.high - axis.low);
+    if (!Number.isNaN(value)) line.push(place.x(x), place.y(value));
+  });
+  if (line.length) pen.line(line, token("--accent"), 2);
+  const spot = point && spotOf(values, point);
+  if (spot) {
+    const x = place.x(point[axis.name]);
+    pen.line([x, box.top, x, box.top + box.height], token("--pin"), 1, [3, 3]);
+    pen.circle(x, place.y(spot.height), 5, token("--pin"), token("--halo"), 2);
+  }
+}
+
+function onCurve([left], [width, height], { axes }) {
+  const box = curveBox(width, height);
+  const [low, high] = axes[0].universe;
+  const share = Math.max(0, Math.min(1, (left - box.left) / box.width));
+  return [low + share * (high - low)];
+}

@@ -1,0 +1,66 @@
+/* The views of the rail, and the panes that each of them shows; a pane may be in several views. */
+
+import * as contour from "./contour.js";
+import { html } from "./elements.js";
+import * as explain from "./explain.js";
+import * as gainplane from "./gainplane.js";
+import { icon } from "./icons.js";
+import * as rules from "./rules.js";
+import * as sets from "./sets.js";
+import * as surface from "./surface.js";
+import * as text from "./text.js";
+
+// Modules of panes by name: each has `title` and `mount(element, app)`.
+const PANES = { rules, text, sets, surface, contour, explain, gains: gainplane };
+
+// A view without panes has no place in the rail.
+const VIEWS = [
+  {
+    id: "design",
+    title: "Rules & sets",
+    picture: "table",
+    panes: ["rules", "text", "sets", "surface", "explain"],
+  },
+  {
+    id: "surface",
+    title: "Surface",
+    picture: "surface",
+    panes: ["surface", "contour", "gains", "explain"],
+  },
+  { id: "world", title: "World", picture: "map", panes: [] },
+  { id: "run", title: "Run & results", picture: "run", panes: [] },
+  { id: "data", title: "Data", picture: "data", panes: [] },
+];
+
+/** Whether a view shows a pane. */
+export function isShown(pane, view) {
+  return VIEWS.find(({ id }) => id === view).panes.includes(pane);
+}
+
+/** Mount the rail and all panes; `store.view` says which of them are shown. */
+export function mountViews(rail, main, app) {
+  const { store } = app;
+  const panes = Object.entries(PANES).map(([name, module]) => {
+    const pane = html("section", { class: "pane", id: `pane-${name}`, "aria-label": module.title });
+    main.append(pane);
+    module.mount(pane, app);
+    return [name, pane];
+  });
+  const buttons = VIEWS.filter(({ panes: names }) => names.length).map(({ id, title, picture }) => {
+    const open = () => store.set({ view: id });
+    return html("button", { type: "button", "data-view": id, onclick: open }, icon(picture), html("span", {}, title));
+  });
+  rail.append(...buttons);
+
+  store.follow(["view", "tab"], ({ view, tab }) => {
+    main.dataset.view = view;
+    for (const [name, pane] of panes) {
+      const behind = name === (tab === "text" ? "rules" : "text");
+      pane.hidden = behind || !isShown(name, view);
+    }
+    for (const button of buttons) {
+      if (button.dataset.view === view) button.setAttribute("aria-current", "page");
+      else button.removeAttribute("aria-current");
+    }
+  });
+}
