@@ -1,8 +1,8 @@
-"""The edits of a rule base that a session makes, by name, with their arguments checked.
+"""The edits that a session makes, by name, with their arguments checked.
 
-A command is a function of this module that takes the text of a rule base and returns the changed
-one. Its arguments come from JSON: their names are those of its parameters, and their types are
-checked by its annotations.
+A command is a function of this module that takes the text of a rule base, or any of the texts, and
+returns the changed one. Its arguments come from JSON: their names are those of its parameters, and
+their types are checked by its annotations.
 """
 
 from __future__ import annotations
@@ -33,8 +33,9 @@ from fuzzytrack.studio.symmetry import (
     symmetric_shape,
 )
 from fuzzytrack.yamltree import quoted, suggestion
+from fuzzytrack.yamlvalues import Value, insert_value, remove_value, set_value
 
-__all__ = ["COMMANDS", "edited", "is_number", "parameters_of"]
+__all__ = ["COMMANDS", "OF_ANY_TEXT", "edited", "is_number", "parameters_of"]
 
 MAX_SAYS = 4096
 _LARGEST = 1e300
@@ -150,8 +151,23 @@ def remove_from_list(text: str, where: dict[str, str]) -> EditedText:
     return remove_rule(text, where)
 
 
-#: Commands by name.
-COMMANDS: dict[str, Callable[..., EditedText]] = {
+def set_at(text: str, path: list[str | int], value: Value) -> str:
+    """Set a value in a text, or add a key, e.g. ``["target", "speed"]``."""
+    return set_value(text, path, value)
+
+
+def insert_at(text: str, path: list[str | int], value: Value) -> str:
+    """Insert an item into a list, e.g. before ``["target", "waypoints", 2]``."""
+    return insert_value(text, path, value)
+
+
+def remove_at(text: str, path: list[str | int]) -> str:
+    """Remove a key or an item of a list."""
+    return remove_value(text, path)
+
+
+#: Commands by name: those of rule bases, and those of any text.
+COMMANDS: dict[str, Callable[..., str]] = {
     "cell": cell,
     "conclude": conclude,
     "confidence": confidence,
@@ -163,16 +179,21 @@ COMMANDS: dict[str, Callable[..., EditedText]] = {
     "operator": operator,
     "add-rule": add_to_list,
     "remove-rule": remove_from_list,
+    "set-value": set_at,
+    "insert-value": insert_at,
+    "remove-value": remove_at,
 }
+#: Commands of any text: the result is YAML, and whoever made it reads it.
+OF_ANY_TEXT = ("set-value", "insert-value", "remove-value")
 
 
-def edited(text: str, command: str, arguments: Mapping[str, Any]) -> EditedText:
-    """Text of a rule base after a command.
+def edited(text: str, command: str, arguments: Mapping[str, Any]) -> str:
+    """Text after a command; an `EditedText` after one of rule bases.
 
     Parameters
     ----------
     text : str
-        A rule base in YAML.
+        The text.
     command : str
         A key of `COMMANDS`.
     arguments : mapping
@@ -180,8 +201,8 @@ def edited(text: str, command: str, arguments: Mapping[str, Any]) -> EditedText:
 
     Raises
     ------
-    RuleBaseError
-        If the text, before or after, is no rule base, or the edit cannot be made.
+    FileError
+        If the text, before or after, is no rule base or no YAML, or the edit cannot be made.
     ValueError
         If there is no such command, or an argument is missing, unknown or of another type.
     """
@@ -223,6 +244,18 @@ def _is_words(value: Any) -> bool:
     )
 
 
+def _is_value(value: Any, depth: int = 3) -> bool:
+    if isinstance(value, list):
+        return depth > 0 and all(_is_value(each, depth - 1) for each in value)
+    return is_number(value) or (isinstance(value, str) and 0 < len(value) <= MAX_SAYS)
+
+
+def _is_path(value: Any) -> bool:
+    return isinstance(value, list) and all(
+        isinstance(key, str | int) and not isinstance(key, bool) for key in value
+    )
+
+
 _IS: dict[str, Callable[[Any], bool]] = {
     "str": lambda value: isinstance(value, str),
     "str | None": lambda value: value is None or isinstance(value, str),
@@ -230,11 +263,15 @@ _IS: dict[str, Callable[[Any], bool]] = {
     "float": is_number,
     "list[float]": lambda value: isinstance(value, list) and all(map(is_number, value)),
     "dict[str, str]": _is_words,
+    "list[str | int]": _is_path,
+    "Value": _is_value,
     "list[dict[str, Any]]": lambda value: (
         isinstance(value, list) and all(isinstance(each, dict) for each in value)
     ),
 }
 _SAID = {
+    "list[str | int]": 'keys and indices, such as ["target", "waypoints", 2]',
+    "Value": "a number, a text that is not empty, or a list of them",
     "str": "a text",
     "str | None": "a text",
     "bool": "true or false",

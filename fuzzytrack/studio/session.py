@@ -15,16 +15,22 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from fuzzytrack.errors import FileError, RuleBaseError, ScenarioError
+from fuzzytrack.errors import FileError, ScenarioError
 from fuzzytrack.fuzzy.as_json import rulebase_as_json
-from fuzzytrack.fuzzy.loading import load_rulebase, rulebase_path, shipped_rulebases
+from fuzzytrack.fuzzy.loading import (
+    load_rulebase,
+    loads_rulebase,
+    rulebase_path,
+    shipped_rulebases,
+)
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.text_edits import EditedText
 from fuzzytrack.json_types import plain
 from fuzzytrack.schedulers.review import explanation
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import loads_scenario, scenario_path, shipped_scenarios
-from fuzzytrack.studio.commands import edited, is_number
+from fuzzytrack.studio.commands import OF_ANY_TEXT, edited, is_number
 from fuzzytrack.studio.complaints import Complaint, complaint_of, complaints_of_rules
 from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.history import History, OpenText, Texts
@@ -36,6 +42,7 @@ __all__ = ["KINDS", "Reading", "Session"]
 
 #: Texts of a session.
 KINDS = ("rules", "scenario")
+_WORDS = {"rules": "rule base", "scenario": "scenario"}
 
 
 @dataclass(frozen=True)
@@ -113,14 +120,15 @@ class Session:
     def do(
         self, command: str, arguments: Mapping[str, Any], gesture: str | None = None
     ) -> tuple[tuple[str, str], ...]:
-        """Edit the rule base.
+        """Edit a text.
 
         Parameters
         ----------
         command : str
             A key of `fuzzytrack.studio.commands.COMMANDS`.
         arguments : mapping
-            Its arguments, values of JSON by name.
+            Its arguments, values of JSON by name. Those of any text also take ``kind``, one of
+            `KINDS`.
         gesture : str, optional
             Name of a drag: its edits are undone together.
 
@@ -131,19 +139,25 @@ class Session:
 
         Raises
         ------
-        RuleBaseError, ValueError
+        FileError, ValueError
             If the edit cannot be made; nothing has changed. See
             `fuzzytrack.studio.complaints.complaint_of`.
         """
-        broken = [c for c in self._reading.complaints["rules"] if c.stops]
+        rest = dict(arguments)
+        kind = rest.pop("kind", None) if command in OF_ANY_TEXT else "rules"
+        old = self._open_text(kind)
+        broken = [each for each in self._reading.complaints[kind] if each.stops]
         if broken:
-            raise RuleBaseError(
-                f"the text of the rule base does not load: {broken[0].message}; mend it first, or "
-                "undo"
+            raise FileError(
+                f"the text of the {_WORDS[kind]} does not load: {broken[0].message}; mend it "
+                "first, or undo"
             )
-        old = self.texts.rules
-        new = edited(old.text, command, arguments)
-        self._put("rules", replace(old, text=str(new)), gesture, new.rules)
+        new = edited(old.text, command, rest)
+        if not isinstance(new, EditedText):
+            self._check(kind, old.name, new)
+            self._put(kind, replace(old, text=new), gesture)
+            return ()
+        self._put(kind, replace(old, text=str(new)), gesture, new.rules)
         return new.also
 
     def replace(self, kind: str, text: str, gesture: str | None = None) -> None:
@@ -367,6 +381,13 @@ class Session:
             last = Reading(last.rules, scenario, {**last.complaints, "scenario": wrong})
         self._reading = last
         return True
+
+    def _check(self, kind: str, name: str, text: str) -> None:
+        """Check that a text loads."""
+        if kind == "rules":
+            loads_rulebase(text, self._file(name))
+        else:
+            self._scenario_of(name, text)
 
     def _scenario_of(self, name: str, text: str) -> Scenario:
         file = self._file(name)

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.errors import FileError, RuleBaseError, ScenarioError
 from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.session import Session
 
@@ -64,7 +64,7 @@ def test_a_text_that_does_not_load_keeps_the_last_rule_base():
         "cells": ["stiffness", "damping"],
     }
     assert session.surfaces(["alpha"], 5).values["alpha"].shape == (5, 5)
-    with pytest.raises(RuleBaseError, match=r"does not load: unknown set of damping 'X'.*or undo"):
+    with pytest.raises(FileError, match=r"does not load: unknown set of damping 'X'.*or undo"):
         session.do("cell", {"where": WHERE, "says": "L-L"})
     session.undo()
     assert session.state()["rules"]["complaints"] == []
@@ -84,6 +84,32 @@ def test_scenarios():
     assert session.reading.scenario.name == name
     session.undo()
     assert session.state()["scenario"]["complaints"] == []
+
+
+def test_values_of_either_text():
+    session = Session(scenario="waypoints")
+    first = session.texts
+    place = {"kind": "scenario", "path": ["target", "waypoints", 2]}
+    session.do("set-value", {**place, "value": [4100, 1800]}, gesture="drag")
+    session.do("set-value", {**place, "value": [4200, 1900.5]}, gesture="drag")
+    expected = first.scenario.text.replace("[4000, 1800]", "[4200, 1900.5]")
+    assert session.texts.scenario.text == expected
+    session.do("insert-value", {**place, "value": [3000, 1000]})
+    assert "[3000, 1000], [4200, 1900.5]" in session.texts.scenario.text
+    session.do("remove-value", place)
+    assert session.texts.scenario.text == expected
+    session.do("set-value", {"kind": "rules", "path": ["scheduler", "period"], "value": 60})
+    assert dict(session.reading.rules.scheduler)["period"] == "60"
+    with pytest.raises(ScenarioError, match="sigma"):
+        session.do("set-value", {"kind": "scenario", "path": ["sensors", "sigma"], "value": -1})
+    with pytest.raises(ScenarioError, match="none was given at the start"):
+        session.do("set-value", {"kind": "scenario", "path": ["trackers", 1], "value": "../a.yaml"})
+    with pytest.raises(ValueError, match="kind: must be one of"):
+        session.do("set-value", {"path": ["name"], "value": 1})
+    assert session.texts.scenario.text == expected
+    while session.undo():
+        pass
+    assert session.texts == first
 
 
 @pytest.mark.parametrize(
