@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fuzzytrack.errors import FileError
+from fuzzytrack.errors import FileError, in_one_sentence
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
@@ -15,8 +15,9 @@ from fuzzytrack.yamltree import Document, Mapping, Node, Sequence
 
 __all__ = ["Complaint", "complaint_of", "complaints_of_rules"]
 
-#: Cells with a mistake that are named at once.
+#: Cells with a mistake that are named at once, and characters that are read for them.
 MAX_CELLS = 50
+MAX_READ = 400_000
 
 #: Keys and indices that lead to a value, as ``("rules", "table", "ns", 3)``.
 Path = tuple[str | int, ...]
@@ -74,7 +75,8 @@ def complaint_of(error: Exception, text: str | None = None, *, stops: bool = Tru
     """
     place = error.location if isinstance(error, FileError) else None
     if place is None or not isinstance(error, FileError):
-        return Complaint(str(error), stops=stops)
+        message = str(error) if isinstance(error, ValueError) else in_one_sentence(error)
+        return Complaint(message, stops=stops)
     path: Path = ()
     cell: dict[str, str] = {}
     if text is not None:
@@ -119,7 +121,7 @@ def complaints_of_rules(
     if rules.scheduler:
         try:
             FuzzyScheduler(rules)
-        except ValueError as error:
+        except Exception as error:  # a plug-in may raise anything
             return rules, (complaint_of(error, text, stops=False),)
     return rules, ()
 
@@ -128,7 +130,7 @@ def _all_complaints(text: str, file: str, error: FileError) -> Iterator[Complain
     first = complaint_of(error, text)
     yield first
     mended, found = text, first
-    for _ in range(MAX_CELLS - 1):
+    for _ in range(min(MAX_CELLS, MAX_READ // max(len(text), 1)) - 1):
         changed = _without_cell(mended, file, found)
         if changed is None:
             return

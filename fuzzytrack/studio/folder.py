@@ -7,6 +7,7 @@ import os
 import re
 import stat
 import threading
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -115,7 +116,7 @@ class Folder:
         return _file_text(name, _read(name, self.place(name), MAX_BYTES))
 
     def save(
-        self, name: str, text: str, version: str | None = None, *, overwrite: bool = False
+        self, name: str, text: str, versions: Collection[str] = (), *, overwrite: bool = False
     ) -> str:
         """Write a file of the folder, whole or not at all.
 
@@ -125,8 +126,9 @@ class Folder:
             Name of the file.
         text : str
             Its text, at most 128 KiB.
-        version : str, optional
-            Version of the file that the text was made from; None for a file that is not there yet.
+        versions : collection of str
+            Versions of the file that the text replaces: the one that it was made from, and those
+            that the same session has saved. Empty for a file that is not there yet.
         overwrite : bool
             Whether a file of another version is replaced.
 
@@ -148,17 +150,17 @@ class Folder:
             raise FolderError(f"{name}: the text is longer than {MAX_BYTES // 1024} KiB")
         with self._writing:
             if not overwrite:
-                self._check_version(name, path, version)
+                self._check_version(name, path, versions)
             with whole_file(path) as draft:
                 draft.write_bytes(raw)
         return _version(raw)
 
-    def _check_version(self, name: str, path: Path, version: str | None) -> None:
+    def _check_version(self, name: str, path: Path, versions: Collection[str]) -> None:
         if not path.exists():
             return
-        if version is None:
+        if not versions:
             raise FolderError(f"{name}: exists already; choose another name, or replace it")
-        if _version(_read(name, path, MAX_BYTES)) != version:
+        if _version(_read(name, path, MAX_BYTES)) not in versions:
             raise FolderError(
                 f"{name}: has been changed since it was opened, by another session or program; "
                 "save under another name, open it again, or replace it"

@@ -20,10 +20,13 @@ class OpenText:
     name : str
         Name of a file in the folder, or of a shipped rule base or scenario (without suffix).
     text : str
+    version : str
+        Version of the file that the text was made from; empty if it was made from none.
     """
 
     name: str
     text: str
+    version: str = ""
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,11 @@ class History:
         while len(self._states) > 2 and self._is_full():
             del self._states[0]
         self._at = len(self._states) - 1
+
+    def amend(self, texts: Texts) -> None:
+        """Put texts in the place of those that are, which is no edit: after they were saved."""
+        self._states[self._at] = texts
+        self._gesture = None
 
     def undo(self) -> bool:
         """Go back by one edit; False if there is none."""

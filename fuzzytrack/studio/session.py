@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, astuple, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -96,9 +96,13 @@ class Session:
     ) -> None:
         self.folder = folder
         self.key = key
-        # What is on disk, by name of the file: its version and its text.
-        self._saved: dict[str, tuple[str, str]] = {}
+        # Texts of files as they were opened or saved last, and versions that were saved here.
+        self._saved: dict[str, str] = {}
+        self._own: dict[str, set[str]] = {}
         texts = Texts(self._opened("rules", rules), self._opened("scenario", scenario))
+        for each in (texts.rules, texts.scenario):
+            if each.version:
+                self._saved[each.name] = each.text
         self._history = History(texts)
         first = load_rulebase("stiffness-damping")
         self._reading = Reading(first, self._scenario_of("turn", _shipped("scenario", "turn")), {})
@@ -193,7 +197,10 @@ class Session:
             If there is no such kind, name or file.
         """
         self._open_text(kind)
-        self._put(kind, self._opened(kind, name), None)
+        new = self._opened(kind, name)
+        self._put(kind, new, None)
+        if new.version:
+            self._saved[name] = new.text
 
     def save(self, kind: str, name: str | None = None, *, overwrite: bool = False) -> None:
         """Save a text in the folder, also one that does not load.
@@ -213,10 +220,13 @@ class Session:
         """
         old = self._open_text(kind)
         name = old.name if name is None else name
-        version = self._saved.get(name, (None, ""))[0]
-        new = self._folder().save(name, old.text, version, overwrite=overwrite)
-        self._saved[name] = new, old.text
-        self._history.put(replace(self.texts, **{kind: replace(old, name=name)}))
+        versions = self._own.setdefault(name, set())
+        known = {*versions, old.version} - {""} if name == old.name else versions
+        new = self._folder().save(name, old.text, known, overwrite=overwrite)
+        versions.add(new)
+        self._saved[name] = old.text
+        saved = replace(old, name=name, version=new)
+        self._history.amend(replace(self.texts, **{kind: saved}))
 
     def is_saved(self, kind: str) -> bool:
         """Whether a text is that of its file, or of what was shipped."""
@@ -225,12 +235,7 @@ class Session:
 
     def autosave(self) -> bool:
         """Write a draft of both texts, if they have changed since; False if not, or no folder."""
-        draft = json.dumps(
-            {
-                kind: {"name": self._open_text(kind).name, "text": self._open_text(kind).text}
-                for kind in KINDS
-            }
-        )
+        draft = json.dumps({kind: asdict(self._open_text(kind)) for kind in KINDS})
         if self.folder is None or draft == self._draft:
             return False
         self.folder.save_draft(self.key, draft)
@@ -248,7 +253,7 @@ class Session:
         try:
             draft = json.loads(self._folder().draft(key))
             found = {kind: OpenText(**draft[kind]) for kind in KINDS}
-            words = [word for each in found.values() for word in (each.name, each.text)]
+            words = [word for each in found.values() for word in astuple(each)]
             if not all(isinstance(w, str) and len(w.encode()) <= MAX_BYTES for w in words):
                 raise ValueError("a text is too long, or none")
         except FolderError:
@@ -376,7 +381,7 @@ class Session:
             wrong: tuple[Complaint, ...] = ()
             try:
                 scenario = self._scenario_of(now.scenario.name, now.scenario.text)
-            except FileError as error:
+            except Exception as error:  # a plug-in may raise anything
                 wrong = (complaint_of(error, now.scenario.text),)
             last = Reading(last.rules, scenario, {**last.complaints, "scenario": wrong})
         self._reading = last
@@ -406,12 +411,11 @@ class Session:
         if name in (shipped_rulebases() if kind == "rules" else shipped_scenarios()):
             return OpenText(name, _shipped(kind, name))
         found = self._folder().open(name)
-        self._saved[name] = found.version, found.text
-        return OpenText(name, found.text)
+        return OpenText(name, found.text, found.version)
 
     def _text_as_saved(self, kind: str, name: str) -> str | None:
         if name in self._saved:
-            return self._saved[name][1]
+            return self._saved[name]
         shipped = shipped_rulebases() if kind == "rules" else shipped_scenarios()
         return _shipped(kind, name) if name in shipped else None
 

@@ -60,3 +60,22 @@ def test_errors_without_a_place():
     assert complaint_of(ValueError("no")).as_json() == {
         "message": "no", "line": None, "column": None, "path": [], "cell": {}, "stops": True,
     }  # fmt: skip
+
+
+def test_many_mistakes_in_a_large_text_take_no_longer():
+    row = "[" + ", ".join(["X-L"] * 7) + "]"
+    text = TEXT.replace("[S-L, M-L, L-L, L-L, S-L, Z-M, Z-S]", row)
+    assert len(complaints(text)) == 7
+    padded = text + "\n#" + "x" * 100_000
+    assert len(complaints(padded)) == 3
+
+
+def test_a_plugin_that_raises_is_a_complaint(monkeypatch):
+    def broken(rules):
+        raise KeyError("oh")
+
+    monkeypatch.setattr("fuzzytrack.studio.complaints.FuzzyScheduler", broken)
+    rules, (found,) = complaints_of_rules(TEXT, "x.yaml")
+    assert rules is not None
+    assert "KeyError" in found.message
+    assert not found.stops

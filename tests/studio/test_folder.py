@@ -60,17 +60,17 @@ def test_texts_are_kept_byte_for_byte(folder):
 
 def test_two_sessions_do_not_overwrite_each_other(folder):
     first = folder.save("a.yaml", "1")
-    second = folder.save("a.yaml", "2", first)
+    second = folder.save("a.yaml", "2", {first})
     with pytest.raises(FolderError, match=r"a\.yaml: has been changed since it was opened"):
-        folder.save("a.yaml", "3", first)
+        folder.save("a.yaml", "3", {first})
     with pytest.raises(FolderError, match=r"a\.yaml: exists already"):
         folder.save("a.yaml", "3")
     assert folder.open("a.yaml").text == "2"
-    folder.save("a.yaml", "3", second)
-    folder.save("a.yaml", "4", first, overwrite=True)
+    folder.save("a.yaml", "3", {first, second})
+    folder.save("a.yaml", "4", {first}, overwrite=True)
     assert folder.open("a.yaml").text == "4"
     (folder.path / "a.yaml").unlink()
-    folder.save("a.yaml", "5", first)
+    folder.save("a.yaml", "5", {first})
     assert os.listdir(folder.path) == ["a.yaml"]
 
 

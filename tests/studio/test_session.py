@@ -156,6 +156,34 @@ def test_files(folder):
         Session().save("rules", "mine.yaml")
 
 
+def test_what_another_session_has_saved_is_not_lost(folder):
+    session, other = Session(folder), Session(folder)
+    session.save("rules", "mine.yaml")
+    session.do("cell", {"where": WHERE, "says": "S-S"})
+    session.save("rules")
+    session.undo()
+    session.save("rules")  # over what was saved here
+    other.open("rules", "mine.yaml")
+    other.do("cell", {"where": WHERE, "says": "M-M"})
+    other.save("rules")
+    # Neither a look at the file, nor to open it and go back, is leave to replace it.
+    session.surfaces(["alpha"], 3, less="mine.yaml")
+    with pytest.raises(FolderError, match="has been changed since"):
+        session.save("rules")
+    session.open("rules", "mine.yaml")
+    session.undo()
+    with pytest.raises(FolderError, match="has been changed since"):
+        session.save("rules")
+    session.autosave()
+    third = Session(folder, key="3")
+    third.restore("0")
+    with pytest.raises(FolderError, match="has been changed since"):
+        third.save("rules")
+    session.redo()
+    session.save("rules")
+    assert shown(session) == "M"
+
+
 def test_differences(folder):
     session = Session(folder)
     session.do("cell", {"where": WHERE, "says": "Z-L"})
