@@ -7,10 +7,14 @@ from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor
 from contextlib import contextmanager
 from functools import partial
+from typing import TYPE_CHECKING
 
 from fuzzytrack.plugins.scripts import Script, load_scripts, loaded_scripts
 
-__all__ = ["workers"]
+if TYPE_CHECKING:
+    from concurrent.futures import ProcessPoolExecutor
+
+__all__ = ["end_processes", "process_pool", "workers"]
 
 # Seconds that a cluster may take to answer.
 _PATIENCE = 5
@@ -54,17 +58,30 @@ def workers(jobs: int, scheduler: str | None) -> Iterator[Executor | None]:
         raise ValueError(f"scheduler: lost the Dask scheduler at {scheduler}") from None
 
 
-@contextmanager
-def _processes(jobs: int) -> Iterator[Executor]:
+def process_pool(jobs: int) -> ProcessPoolExecutor:
+    """Executor of new processes of this computer, with the scripts of plug-ins that are loaded."""
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
-    pool = ProcessPoolExecutor(
+    return ProcessPoolExecutor(
         jobs,
         multiprocessing.get_context("spawn"),
         initializer=_begin,
         initargs=(loaded_scripts(),),
     )
+
+
+def end_processes(pool: ProcessPoolExecutor) -> None:
+    """End the processes of a pool at once, whatever they do; what they were doing fails."""
+    # Python 3.14 has `terminate_workers` for this.
+    for process in list((pool._processes or {}).values()):
+        process.kill()
+    pool.shutdown(wait=False, cancel_futures=True)
+
+
+@contextmanager
+def _processes(jobs: int) -> Iterator[Executor]:
+    pool = process_pool(jobs)
     try:
         yield pool
     finally:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
@@ -24,7 +24,10 @@ from fuzzytrack.trackers.compilation import announce
 from fuzzytrack.trackers.result import TrackResult
 from fuzzytrack.trackers.state import Gains
 
-__all__ = ["monte_carlo"]
+__all__ = ["Preview", "monte_carlo", "simulated_runs"]
+
+#: Called with the results of the runs that are done.
+Preview = Callable[[Results], None]
 
 # Coordinates a chunk may hold: a tracker makes about ten arrays of this many floats.
 _COORDINATES = 200_000
@@ -40,6 +43,7 @@ def monte_carlo(
     seed: int,
     *,
     progress: Progress | None = None,
+    preview: Preview | None = None,
     executor: Executor | None = None,
     folder: str | os.PathLike[str] | None = None,
     resume: bool = False,
@@ -60,6 +64,9 @@ def monte_carlo(
         Seed, not negative; the same seed gives the same numbers.
     progress : callable, optional
         Called with the share of the runs that are done, after every chunk of them.
+    preview : callable, optional
+        Called with the results of the runs that are done, the first ones without a gap, whenever
+        there are more of them. They are what a job of that many runs gives.
     executor : concurrent.futures.Executor, optional
         Runs the chunks; in this process unless given. A process pool, or a Dask cluster through
         ``client.get_executor()``. Scenario and trackers are pickled to it.
@@ -123,27 +130,53 @@ def monte_carlo(
         raise ValueError("resume: needs the folder of the job to continue")
 
     whole: dict[str, Array] = {}
-    done = 0
+    done, ready = 0, _Ready()
     for chunk, part in _parts(scenario, made, seed, chunks, executor, store):
         _put(whole, part, chunk.start, runs)
         done += len(chunk)
         if progress is not None:
             progress(done / runs)
-    sample = {name: whole.pop(name) for name in tuple(whole) if name.startswith("sample_")}
+        if ready.grows(chunk) and preview is not None:
+            preview(_results(scenario, made, seed, whole, ready.count))
+    return _results(scenario, made, seed, whole, runs)
+
+
+def _results(
+    scenario: Scenario, made: dict[str, Tracker], seed: int, whole: dict[str, Array], runs: int
+) -> Results:
+    """Results of the first runs, which are views of the arrays."""
+    sample = {name: whole[name] for name in whole if name.startswith("sample_")}
+    first = {name: array[_at(name, 0, runs)] for name, array in whole.items() if name not in sample}
     return Results(
         scenario=scenario.name,
         names=tuple(made),
         seed=seed,
         first_scored=scenario.first_scored,
         time=scenario.scan_time,
-        predicted=whole["predicted"],
-        filtered=whole["filtered"],
-        velocity=whole.get("velocity"),
-        measured=whole["measured"],
-        nis=whole.get("nis"),
-        nees=whole.get("nees"),
+        predicted=first["predicted"],
+        filtered=first["filtered"],
+        velocity=first.get("velocity"),
+        measured=first["measured"],
+        nis=first.get("nis"),
+        nees=first.get("nees"),
         sample=Sample(**{name.removeprefix("sample_"): array for name, array in sample.items()}),
     )
+
+
+class _Ready:
+    """How many of the first runs are done, without a gap; chunks finish in any order."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._later: dict[int, int] = {}
+
+    def grows(self, chunk: range) -> bool:
+        """Whether there are more of them with this chunk."""
+        self._later[chunk.start] = chunk.stop
+        before = self.count
+        while self.count in self._later:
+            self.count = self._later.pop(self.count)
+        return self.count > before
 
 
 def _chunk_runs(scenario: Scenario) -> int:
@@ -157,11 +190,19 @@ def _put(whole: dict[str, Array], part: dict[str, Array], first: int, runs: int)
         if name.startswith("sample_"):
             whole[name] = array
             continue
-        axis = 0 if name == "measured" else 1
+        axis = _axis_of_runs(name)
         if name not in whole:
             whole[name] = np.empty((*array.shape[:axis], runs, *array.shape[axis + 1 :]))
-        at = slice(first, first + array.shape[axis])
-        whole[name][at if axis == 0 else (slice(None), at)] = array
+        whole[name][_at(name, first, array.shape[axis])] = array
+
+
+def _axis_of_runs(name: str) -> int:
+    return 0 if name == "measured" else 1
+
+
+def _at(name: str, first: int, count: int) -> tuple[slice, ...]:
+    """Where some runs are in an array."""
+    return (*[slice(None)] * _axis_of_runs(name), slice(first, first + count))
 
 
 # -------------------------------------------------------------------- where chunks are run
@@ -196,6 +237,38 @@ def _parts(
 # -------------------------------------------------------------------- one chunk
 
 
+def simulated_runs(
+    scenario: Scenario, seed: int, runs: range
+) -> tuple[Array, Array, Array | None, Plots]:
+    """Times, true positions, true velocities and plots of some of the runs.
+
+    Parameters
+    ----------
+    scenario, seed
+        As for `monte_carlo`.
+    runs : range
+        Numbers of the runs, from 0.
+
+    Returns
+    -------
+    times : ndarray, shape (n_steps,) or (n_steps, runs)
+        s.
+    position, velocity : ndarray, shape (n_steps, 1 or runs, n_axes)
+        m, m/s; None where the velocity is not known.
+    plots : Plots
+        Those that trackers get, shape (n_steps, runs, n_axes).
+    """
+    # What SeedSequence(seed).spawn gives for these runs.
+    streams = [np.random.SeedSequence(seed, spawn_key=(k,)) for k in runs]
+    position, velocity = scenario.truth(runs.start, len(runs))
+    plots = scenario.sensors.measure(position, streams)
+    if scenario.prepare_start:
+        plots = _prepared(scenario.time, plots)
+    true = truth_of_runs(position, len(runs))
+    moving = None if velocity is None else truth_of_runs(velocity, len(runs))
+    return scenario.times(runs.start, len(runs)), true, moving, plots
+
+
 def run_chunk(
     scenario: Scenario, trackers: Mapping[str, Tracker], seed: int, runs: range
 ) -> dict[str, Array]:
@@ -214,15 +287,7 @@ def run_chunk(
         Attributes of `Results` by name, for these runs; with run 0 those of `Sample` too, named
         ``sample_...``.
     """
-    # What SeedSequence(seed).spawn gives for these runs.
-    streams = [np.random.SeedSequence(seed, spawn_key=(k,)) for k in runs]
-    times = scenario.times(runs.start, len(runs))
-    position, velocity = scenario.truth(runs.start, len(runs))
-    plots = scenario.sensors.measure(position, streams)
-    if scenario.prepare_start:
-        plots = _prepared(scenario.time, plots)
-    true = truth_of_runs(position, len(runs))
-    moving = None if velocity is None else truth_of_runs(velocity, len(runs))
+    times, true, moving, plots = simulated_runs(scenario, seed, runs)
     part = _blank(len(trackers), plots.z.shape, moving is not None, scenario.process_sigma)
     part["measured"] = _turned(plots.z - true)
     for k, tracker in enumerate(trackers.values()):

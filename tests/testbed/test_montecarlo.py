@@ -205,6 +205,20 @@ def test_chunks_leave_no_trace(scenario, size, monkeypatch):
     assert (monte_carlo(scenario, TRACKERS, 5, 4).measured != one.measured[:5]).any()
 
 
+def test_a_preview_has_the_first_runs_without_a_gap(monkeypatch):
+    monkeypatch.setattr(montecarlo, "_RUNS", 4)
+    scenario, seen = straight(), []
+
+    def in_another_order(function, tasks, executor):
+        for task in sorted(tasks, key=lambda chunk: [4, 0, 8, 12, 16].index(chunk.start)):
+            yield task, function(task)
+
+    monkeypatch.setattr(montecarlo, "run_tasks", in_another_order)
+    montecarlo.monte_carlo(scenario, TRACKERS, 17, 3, preview=seen.append)
+    assert [found.runs for found in seen] == [8, 12, 16, 17]
+    assert_same(seen[0], monte_carlo(scenario, TRACKERS, 8, 3))
+
+
 def test_size_of_chunks():
     assert montecarlo._chunk_runs(straight()) == 124
     long = np.arange(300_000.0)
