@@ -42,6 +42,10 @@ COMMANDS = {
         "tune:tune",
         "Tune the numbers of a tracker, and judge it on tracks that it was not tuned on.",
     ),
+    "studio": (
+        "studio:studio",
+        "Edit rule bases, draw surfaces and run experiments on a page in the browser.",
+    ),
     "simulate": (
         "simulate:simulate",
         "Write the plots of a simulated target, or the scans of a scene of many targets.",

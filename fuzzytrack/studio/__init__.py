@@ -1,1 +1,4 @@
-"""The page in the browser, without the web: texts, edits, files and surfaces of a session."""
+"""The studio: rule bases, control surfaces and experiments on a page in the browser.
+
+Needs the extra ``studio``. Only `app`, `connection` and `server` know of the web.
+"""

@@ -117,6 +117,11 @@ class Session:
         return self._history.now
 
     @property
+    def steps(self) -> tuple[int, int]:
+        """How many edits can be undone, and redone."""
+        return self._history.steps
+
+    @property
     def reading(self) -> Reading:
         """What was read from them last."""
         return self._reading
@@ -176,6 +181,17 @@ class Session:
             raise ValueError(f"text: is longer than {MAX_BYTES // 1024} KiB; make it shorter")
         self._put(kind, replace(self._open_text(kind), text=text), gesture)
 
+    def edit_scenario(self, text: str) -> None:
+        """Replace the text of the scenario by another one that loads.
+
+        Raises
+        ------
+        ScenarioError, ValueError
+            If it does not, or is too long; nothing has changed.
+        """
+        self._scenario_of(self.texts.scenario.name, text)
+        self.replace("scenario", text)
+
     def undo(self) -> bool:
         """Undo the last edit of either text; False if there is none."""
         before = self.texts
@@ -231,7 +247,11 @@ class Session:
     def is_saved(self, kind: str) -> bool:
         """Whether a text is that of its file, or of what was shipped."""
         open_text = self._open_text(kind)
-        return self._text_as_saved(kind, open_text.name) == open_text.text
+        return self.saved_text(kind) == open_text.text
+
+    def saved_text(self, kind: str) -> str | None:
+        """Text as it was last saved or opened; None if it never was."""
+        return self._text_as_saved(kind, self._open_text(kind).name)
 
     def autosave(self) -> bool:
         """Write a draft of both texts, if they have changed since; False if not, or no folder."""
@@ -422,11 +442,15 @@ class Session:
     def _other(self, name: str) -> FuzzySystem:
         if name == "saved":
             name = self.texts.rules.name
-            text = self._text_as_saved("rules", name)
-            if text is None:
+            found = self.saved_text("rules")
+            if found is None:
                 raise ValueError("less: the rule base has not been saved yet; save it, or name one")
+            text = found
+        elif name in shipped_rulebases():
+            text = _shipped("rules", name)
         else:
-            text = self._opened("rules", name).text
+            # Not opened: a later save must still see that the file has been changed.
+            text = self._folder().open(name).text
         rules, complaints = complaints_of_rules(text, self._file(name))
         if rules is None:
             raise ValueError(f"less: {name} does not load: {complaints[0].message}")

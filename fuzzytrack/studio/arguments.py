@@ -1,0 +1,145 @@
+"""Arguments of a command, each checked when it is read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+__all__ = ["Arguments"]
+
+_LONGEST = 131_072
+_MOST_ITEMS = 10_000
+_NEEDED: Any = object()
+
+
+class Arguments:
+    """Arguments of a command, as a page sent them.
+
+    Parameters
+    ----------
+    given : mapping of str to JSON value
+
+    Notes
+    -----
+    Each method takes the name of an argument and, unless it is needed, its default, and raises a
+    ValueError that names the argument and what is allowed.
+    """
+
+    def __init__(self, given: Mapping[str, Any]) -> None:
+        self._given = given
+
+    def __contains__(self, name: str) -> bool:
+        return self._given.get(name) is not None
+
+    def is_text(self, name: str) -> bool:
+        """Whether an argument is given as a text."""
+        return isinstance(self._given.get(name), str)
+
+    def text(self, name: str, default: Any = _NEEDED, longest: int = _LONGEST) -> Any:
+        """A text of at most so many characters."""
+        if self._missing(name, default, "a text"):
+            return default
+        found = self._given[name]
+        if not isinstance(found, str):
+            raise ValueError(f"{name}: needs a text")
+        if len(found) > longest:
+            raise ValueError(f"{name}: {len(found)} characters; at most {longest}")
+        if any("\ud800" <= c <= "\udfff" for c in found):
+            raise ValueError(f"{name}: has half a character (a lone surrogate); type it anew")
+        return found
+
+    def texts(self, name: str, default: Any = _NEEDED) -> Any:
+        """A list of texts, at least one."""
+        if self._missing(name, default, "a list of texts"):
+            return default
+        found = self._items(name, "a list of texts")
+        if not found or not all(isinstance(each, str) for each in found):
+            raise ValueError(f"{name}: needs a list of texts, at least one")
+        return list(found)
+
+    def choice(self, name: str, allowed: Sequence[str], default: Any = _NEEDED) -> Any:
+        """One of some words."""
+        found = self.text(name, default)
+        if found is not default and found not in allowed:
+            raise ValueError(f"{name}: unknown {found[:40]!r}; one of {', '.join(allowed)}")
+        return found
+
+    def flag(self, name: str) -> bool:
+        """Whether; no unless given."""
+        found = self._given.get(name)
+        if found is not None and not isinstance(found, bool):
+            raise ValueError(f"{name}: needs true or false")
+        return bool(found)
+
+    def whole(self, name: str, low: int, high: int, default: Any = _NEEDED) -> Any:
+        """A whole number within limits."""
+        kind = f"a whole number from {low} to {high}"
+        if self._missing(name, default, kind):
+            return default
+        found = self._given[name]
+        if isinstance(found, float) and found.is_integer():
+            found = int(found)
+        if type(found) is not int or not low <= found <= high:
+            raise ValueError(f"{name}: needs {kind}, got {_short(found)}")
+        return found
+
+    def number(self, name: str, default: Any = _NEEDED) -> Any:
+        """A finite number."""
+        if self._missing(name, default, "a number"):
+            return default
+        return _number(name, self._given[name])
+
+    def numbers(self, name: str, default: Any = _NEEDED) -> Any:
+        """A list of finite numbers."""
+        if self._missing(name, default, "a list of numbers"):
+            return default
+        return [_number(name, each) for each in self._items(name, "a list of numbers")]
+
+    def points(self, name: str, default: Any = _NEEDED) -> Any:
+        """A list of pairs of finite numbers."""
+        if self._missing(name, default, "a list of points [x, y]"):
+            return default
+        found = self._items(name, "a list of points [x, y]")
+        if not all(isinstance(each, list) and len(each) == 2 for each in found):
+            raise ValueError(f"{name}: needs a list of points [x, y]")
+        return [[_number(name, x), _number(name, y)] for x, y in found]
+
+    def numbers_by_name(self, name: str) -> dict[str, float]:
+        """An object of finite numbers."""
+        found = self._given.get(name)
+        if not isinstance(found, dict):
+            raise ValueError(f"{name}: needs an object with a number for each name")
+        return {str(key): _number(f"{name}: {key[:40]}", each) for key, each in found.items()}
+
+    def _missing(self, name: str, default: Any, kind: str) -> bool:
+        if name in self:
+            return False
+        if default is _NEEDED:
+            raise ValueError(f"{name}: is missing; needs {kind}")
+        return True
+
+    def _items(self, name: str, kind: str) -> list[Any]:
+        found = self._given[name]
+        if not isinstance(found, list):
+            raise ValueError(f"{name}: needs {kind}")
+        if len(found) > _MOST_ITEMS:
+            raise ValueError(f"{name}: {len(found)} items; at most {_MOST_ITEMS}")
+        return found
+
+
+def _number(name: str, found: Any) -> float:
+    if isinstance(found, bool) or not isinstance(found, int | float):
+        raise ValueError(f"{name}: needs numbers, got {_short(found)}")
+    try:
+        value = float(found)
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise ValueError(f"{name}: needs finite numbers")
+    return value
+
+
+def _short(found: Any) -> str:
+    text = repr(found)
+    return text if len(text) <= 40 else f"{text[:37]}..."

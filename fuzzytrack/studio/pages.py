@@ -1,0 +1,198 @@
+"""What the pages of the studio work on: sessions, scenarios and results, each page its own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Protocol
+
+from fuzzytrack.studio.folder import Folder
+from fuzzytrack.studio.jobs import Job, Jobs
+from fuzzytrack.studio.limits import MOST_SESSIONS
+from fuzzytrack.studio.messages import event
+from fuzzytrack.studio.run_jobs import Run
+from fuzzytrack.studio.session import Session
+from fuzzytrack.studio.tracker_texts import listed_trackers
+
+__all__ = ["Line", "Page", "RunCommand", "Studio"]
+
+#: Command that does an experiment: scenario, trackers, runs, seed.
+RunCommand = Callable[[str, Sequence[str], int, int], str]
+
+
+# Seconds that a command waits for the one before it.
+_PATIENCE = 20
+
+
+class Line(Protocol):
+    """A connection to a browser; see `fuzzytrack.studio.connection.Connection`."""
+
+    def send(self, message: str | bytes) -> None:
+        """Send a message, from any thread."""
+
+    def move(self) -> None:
+        """End the connection, since the page has another one; from any thread."""
+
+
+class Page:
+    """What one page works on.
+
+    Parameters
+    ----------
+    key : str
+        By which the page finds it again after a reload.
+    studio : Studio
+    session : Session
+        The rule base and the scenario that are edited.
+
+    Attributes
+    ----------
+    version : int
+        Grows with every change.
+    drags : int
+        Drags that have ended; the changes of one are undone together.
+    job : Job or None
+        The last one that the page has started.
+    run : Run or None
+        The last Monte Carlo experiment that the page has started.
+    """
+
+    def __init__(self, key: str, studio: Studio, session: Session) -> None:
+        self.key = key
+        self.studio = studio
+        self.session = session
+        self._lock = threading.Lock()
+        self.version = 0
+        self.drags = 0
+        self.job: Job | None = None
+        self.run: Run | None = None
+        self.used = time.monotonic()
+        self._connection: Line | None = None
+
+    @contextlib.contextmanager
+    def turn(self) -> Iterator[None]:
+        """Be alone on the page for one command.
+
+        Raises
+        ------
+        ValueError
+            If another command does not come to an end.
+        """
+        if not self._lock.acquire(timeout=_PATIENCE):
+            raise ValueError("this page is busy with work that does not end; open the studio anew")
+        try:
+            yield
+        finally:
+            self._lock.release()
+
+    @property
+    def connected(self) -> bool:
+        """Whether a browser shows it now."""
+        return self._connection is not None
+
+    def join(self, connection: Line) -> Line | None:
+        """Take a connection; gives the one that it had."""
+        before, self._connection = self._connection, connection
+        self.used = time.monotonic()
+        return before
+
+    def leave(self, connection: Line) -> None:
+        """Give a connection up, unless the page has another one already."""
+        if self._connection is connection:
+            self._connection = None
+            self.used = time.monotonic()
+
+    def save_draft(self) -> None:
+        """Keep texts that have been changed, so that they are there after a start of the server."""
+        if self.version:
+            with contextlib.suppress(OSError, ValueError):  # the folder may be gone, or be full
+                self.session.autosave()
+
+    def report(self, job: Job, with_results: bool) -> None:
+        """Tell the page of a job."""
+        if self._connection is not None:
+            self._connection.send(event("job", job=job.as_json(with_results)))
+
+
+class Studio:
+    """All that a server of the studio holds.
+
+    Parameters
+    ----------
+    folder : str or path
+        Files of the user.
+    command : callable, optional
+        Called with the scenario, the trackers, runs and seed of an experiment; gives the command
+        that does the same.
+
+    Raises
+    ------
+    FolderError
+        If there is no such folder.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str], command: RunCommand | None = None) -> None:
+        self.folder = Folder(folder)
+        self.command = command
+        self.jobs = Jobs()
+        self._pages: dict[str, Page] = {}
+        self._lock = threading.Lock()
+        self._trackers: list[dict[str, Any]] | None = None
+
+    def trackers(self) -> list[dict[str, Any]]:
+        """Trackers that a page can choose from."""
+        if self._trackers is None:
+            self._trackers = listed_trackers()
+        return self._trackers
+
+    def warm(self) -> None:
+        """Do once what takes long for the first time."""
+        session = Session()
+        session.surfaces(session.reading.rules.output_names)
+        session.explain(dict.fromkeys(session.reading.rules.input_names, 0.0))
+        self.trackers()
+
+    def open(self, key: str | None) -> Page:
+        """The page of a key, with its draft if there is one; a new page without a key.
+
+        Raises
+        ------
+        ValueError
+            If too many are open.
+        """
+        with self._lock:
+            page = self._pages.get(key) if key else None
+            if page is None:
+                self._make_room()
+                page = self._new(key)
+                self._pages[page.key] = page
+            return page
+
+    def _new(self, key: str | None) -> Page:
+        if key is not None and key in self.folder.drafts():
+            session = Session(self.folder, key=key)
+            # A damaged draft is left where it is.
+            with contextlib.suppress(ValueError):
+                session.restore(key)
+                return Page(key, self, session)
+        key = secrets.token_hex(12)
+        return Page(key, self, Session(self.folder, key=key))
+
+    def _make_room(self) -> None:
+        """Forget the page that was closed first, if there are as many as there may be."""
+        if len(self._pages) < MOST_SESSIONS:
+            return
+        closed = [page for page in self._pages.values() if not page.connected]
+        if not closed:
+            raise ValueError(f"{MOST_SESSIONS} pages are open; close one, and load this one again")
+        del self._pages[min(closed, key=lambda page: page.used).key]
+
+    def close(self) -> None:
+        """End the job that runs, and keep drafts of what has changed."""
+        self.jobs.close()
+        for page in self._pages.values():
+            page.save_draft()

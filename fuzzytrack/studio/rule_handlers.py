@@ -1,0 +1,266 @@
+"""Commands about the rule base: edits, undo, files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from fuzzytrack.fuzzy.loading import shipped_rulebases
+from fuzzytrack.fuzzy.membership import SHAPES
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.simulation.scenario_files import scenario_source, shipped_scenarios
+from fuzzytrack.specs import is_file
+from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.complaints import Complaint
+from fuzzytrack.studio.folder import Folder
+from fuzzytrack.studio.handlers import Handler, Later
+from fuzzytrack.studio.limits import LIMITS
+from fuzzytrack.studio.pages import Page
+from fuzzytrack.studio.state import cell_place, rulebase_state, shared_sets
+from fuzzytrack.studio.world_handlers import scenario_state
+
+__all__ = ["HANDLERS", "state_of"]
+
+Answer = Mapping[str, Any]
+
+_KIND = re.compile(r"^(rulebase|scenario)[ \t]*:", re.MULTILINE)
+_KINDS = {"rulebase": "rules", "scenario": "scenario", None: "other"}
+_SHARED = ("both", "apart")
+
+
+def hello(page: Page, given: Arguments) -> Later:
+    """All that a page needs when it is opened."""
+    state, scenario = state_of(page), scenario_state(page)
+    job = page.job
+
+    def work() -> Answer:
+        return {
+            "session": page.key,
+            "state": state,
+            "scenario": scenario,
+            "files": _files(page.studio.folder),
+            "shipped": shipped_rulebases(),
+            "scenarios": [{"name": n, "source": scenario_source(n)} for n in shipped_scenarios()],
+            "trackers": page.studio.trackers(),
+            "limits": LIMITS,
+            "job": None if job is None else job.as_json(True),
+        }
+
+    return Later(work)
+
+
+def state_of(page: Page) -> dict[str, Any]:
+    """The rule base of a page, and what is wrong with its text."""
+    session = page.session
+    opened, rules = session.texts.rules, session.reading.rules
+    undo, redo = session.steps
+    return {
+        "version": page.version,
+        "name": opened.name,
+        "file": opened.name if is_file(opened.name) else None,
+        "saved": session.is_saved("rules"),
+        "undo": undo,
+        "redo": redo,
+        "text": opened.text,
+        "complaints": [_complaint(rules, c) for c in session.reading.complaints["rules"]],
+        "rulebase": rulebase_state(rules, shared_sets(opened.text)),
+    }
+
+
+def _complaint(rules: RuleBase, found: Complaint) -> dict[str, Any]:
+    """A complaint, with the cell, rule or set that it is about."""
+    where: dict[str, Any] | None = None
+    path = found.path
+    if found.cell and (place := cell_place(rules, found.cell)):
+        where = {"cell": place}
+    elif path[:1] == ("rules",) and len(path) > 1 and isinstance(path[1], int):
+        where = {"rule": path[1]}
+    elif len(path) > 3 and path[0] in ("inputs", "outputs") and path[2] == "sets":
+        where = {"variable": path[1], "set": path[3]}
+    elif len(path) > 1 and path[0] in ("inputs", "outputs"):
+        where = {"variable": path[1], "set": None}
+    return {
+        "message": found.message,
+        "line": found.line,
+        "column": found.column,
+        "stops": found.stops,
+        "where": where,
+    }
+
+
+# -------------------------------------------------------------------- edits
+
+
+def _edit(
+    page: Page, command: str, arguments: dict[str, Any], gesture: str | None = None
+) -> Answer:
+    also = page.session.do(command, arguments, gesture)
+    page.version += 1
+    return {"state": state_of(page), "also": [{"variable": v, "set": s} for v, s in also]}
+
+
+def set_cell(page: Page, given: Arguments) -> Answer:
+    """Change a cell of the table."""
+    rules = page.session.reading.rules
+    layout = rules.layout
+    if layout is None:
+        raise ValueError("row: the rules are a list, not a table; change them by their index")
+    where = {
+        layout.rows: _set_at(given, "row", rules.input(layout.rows).set_names),
+        layout.columns: _set_at(given, "column", rules.input(layout.columns).set_names),
+    }
+    says, symmetric = given.text("text"), given.flag("symmetric")
+    return _edit(page, "cell", {"where": where, "says": says, "symmetric": symmetric})
+
+
+def _set_at(given: Arguments, name: str, sets: tuple[str, ...]) -> str:
+    """A set by its name, or by its place from 0."""
+    if given.is_text(name):
+        return str(given.choice(name, sets))
+    place: int = given.whole(name, 0, len(sets) - 1)
+    return sets[place]
+
+
+def set_rule(page: Page, given: Arguments) -> Answer:
+    """Change the conclusions of a rule, by its place in the list from 0."""
+    rules = page.session.reading.rules.rules
+    rule = rules[given.whole("index", 0, len(rules) - 1)]
+    arguments = {"where": dict(rule.conditions), "says": given.text("text")}
+    return _edit(page, "cell", {**arguments, "symmetric": given.flag("symmetric")})
+
+
+def set_shape(page: Page, given: Arguments) -> Answer:
+    """Change a set; while it is dragged with ``draft``, which is undone as one."""
+    arguments = {
+        **_set_named(given),
+        "parameters": given.numbers("parameters"),
+        "symmetric": given.flag("symmetric"),
+    }
+    if "shape" in given:
+        arguments["shape"] = given.choice("shape", tuple(SHAPES))
+    gesture = f"drag {page.drags}"
+    if not given.flag("draft"):
+        page.drags += 1
+    return _edit(page, "shape", arguments, gesture)
+
+
+def _set_named(given: Arguments) -> dict[str, Any]:
+    apart = given.choice("shared", _SHARED, "both") == "apart"
+    return {"variable": given.text("variable"), "set": given.text("set"), "apart": apart}
+
+
+def add_set(page: Page, given: Arguments) -> Answer:
+    """Add a set, and its column or row."""
+    arguments = {
+        **_set_named(given),
+        "shape": given.choice("shape", tuple(SHAPES)),
+        "parameters": given.numbers("parameters"),
+    }
+    if "like" in given:
+        arguments["like"] = given.text("like")
+    return _edit(page, "add-set", arguments)
+
+
+def remove_set(page: Page, given: Arguments) -> Answer:
+    """Remove a set; with ``with_rules`` its column or row too."""
+    arguments = {**_set_named(given), "with_rules": given.flag("with_rules")}
+    return _edit(page, "remove-set", arguments)
+
+
+def rename_set(page: Page, given: Arguments) -> Answer:
+    """Rename a set, in the rules too."""
+    return _edit(page, "rename-set", {**_set_named(given), "name": given.text("name")})
+
+
+def set_operator(page: Page, given: Arguments) -> Answer:
+    """Change an operator."""
+    arguments = {"operator": given.text("operator"), "word": given.text("value")}
+    return _edit(page, "operator", arguments)
+
+
+def set_text(page: Page, given: Arguments) -> Answer:
+    """Take the whole text as it is typed; what is wrong with it is in the state."""
+    page.session.replace("rules", given.text("text"))
+    return changed(page)
+
+
+def undo(page: Page, given: Arguments) -> Answer:
+    """Undo the last change of the rule base or the scenario."""
+    page.session.undo()
+    return {**changed(page), "scenario": scenario_state(page)}
+
+
+def redo(page: Page, given: Arguments) -> Answer:
+    """Do again what was undone last."""
+    page.session.redo()
+    return {**changed(page), "scenario": scenario_state(page)}
+
+
+def changed(page: Page) -> dict[str, Any]:
+    """Answer to a change."""
+    page.version += 1
+    return {"state": state_of(page)}
+
+
+# -------------------------------------------------------------------- files
+
+
+def open_rules(page: Page, given: Arguments) -> Answer:
+    """Open a shipped rule base, or a file of the folder."""
+    page.session.open("rules", given.text("name"))
+    return changed(page)
+
+
+def save(page: Page, given: Arguments) -> Answer:
+    """Save the rule base in the folder."""
+    page.session.save("rules", _file_name(page, given), overwrite=given.flag("overwrite"))
+    return {**changed(page), "files": _files(page.studio.folder)}
+
+
+def _file_name(page: Page, given: Arguments) -> str:
+    """Name of a file to be saved; ``.yaml`` is added where it is missing."""
+    name: str = given.text("name", page.session.texts.rules.name, 100)
+    return name if is_file(name) else f"{name}.yaml"
+
+
+def files(page: Page, given: Arguments) -> Answer:
+    """Files of the folder."""
+    return {"files": _files(page.studio.folder)}
+
+
+def _files(folder: Folder) -> list[dict[str, Any]]:
+    return [
+        {"name": each.name, "size": each.size, "kind": _kind(folder, each.name)}
+        for each in folder.list()
+    ]
+
+
+def _kind(folder: Folder, name: str) -> str:
+    if not is_file(name):
+        return "recording"
+    try:
+        found = _KIND.search(folder.open(name).text)
+    except ValueError:
+        return "other"
+    return _KINDS[found[1] if found else None]
+
+
+HANDLERS = {
+    "hello": Handler(hello, ("session",)),
+    "set_cell": Handler(set_cell, ("row", "column", "text", "symmetric")),
+    "set_rule": Handler(set_rule, ("index", "text", "symmetric")),
+    "set_shape": Handler(
+        set_shape, ("variable", "set", "shape", "parameters", "shared", "symmetric", "draft")
+    ),
+    "add_set": Handler(add_set, ("variable", "set", "shape", "parameters", "shared", "like")),
+    "remove_set": Handler(remove_set, ("variable", "set", "shared", "with_rules")),
+    "rename_set": Handler(rename_set, ("variable", "set", "name", "shared")),
+    "set_operator": Handler(set_operator, ("operator", "value")),
+    "set_text": Handler(set_text, ("text",)),
+    "undo": Handler(undo),
+    "redo": Handler(redo),
+    "open": Handler(open_rules, ("name",)),
+    "save": Handler(save, ("name", "overwrite")),
+    "files": Handler(files),
+}

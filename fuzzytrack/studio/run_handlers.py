@@ -1,0 +1,91 @@
+"""Commands about runs: Monte Carlo jobs, their end, and one run plot by plot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.fuzzy.loading import loads_rulebase
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.handlers import Handler, Later
+from fuzzytrack.studio.limits import MOST_RUNS
+from fuzzytrack.studio.pages import Page
+from fuzzytrack.studio.run_jobs import Run, run_work
+from fuzzytrack.studio.tracker_texts import EDITOR, make_trackers
+from fuzzytrack.studio.walk import walk
+from fuzzytrack.testbed.montecarlo import simulated_runs
+from fuzzytrack.trackers.base import Tracker
+
+__all__ = ["HANDLERS", "trackers_of"]
+
+Answer = Mapping[str, Any]
+_MOST_SEED = 2**53
+
+
+def run(page: Page, given: Arguments) -> Later:
+    """Start a Monte Carlo experiment with the scenario of the page."""
+    texts = given.texts("trackers")
+    runs = given.whole("runs", 1, MOST_RUNS)
+    seed = given.whole("seed", 0, _MOST_SEED, 0)
+    scenario = page.session.reading.scenario
+    make = trackers_of(page, texts)
+
+    def work() -> Answer:
+        started = Run(scenario, make(), runs, seed)
+        started.check()
+        page.job = page.studio.jobs.start("run", runs, run_work(started), page.report)
+        page.run = started
+        return {"job": page.job.number}
+
+    return Later(work)
+
+
+def trackers_of(page: Page, texts: list[str]) -> Any:
+    """Function that makes trackers of texts, with the rule base as it is now."""
+    rules = page.session.reading.rules
+    saved = page.session.saved_text("rules")
+
+    def edited(name: str) -> RuleBase:
+        if name == EDITOR:
+            return rules
+        if saved is None:
+            raise ValueError("trackers: the rule base has not been saved yet; save it first")
+        return loads_rulebase(saved)
+
+    def make() -> dict[str, Tracker]:
+        return make_trackers(texts, edited, page.studio.folder.place)
+
+    return make
+
+
+def cancel(page: Page, given: Arguments) -> Answer:
+    """Cancel a job at once."""
+    job = page.studio.jobs.cancel(given.whole("job", 1, _MOST_SEED))
+    return {"job": job.as_json(False)}
+
+
+def walk_run(page: Page, given: Arguments) -> Later:
+    """One run of one tracker, plot by plot, with the plots that the experiment has in it."""
+    make = trackers_of(page, [given.text("tracker")])
+    seed = given.whole("seed", 0, _MOST_SEED, 0)
+    number = given.whole("run", 0, MOST_RUNS - 1, 0)
+    scenario = page.session.reading.scenario
+
+    def work() -> Answer:
+        (tracker,) = make().values()
+        times, true, _, plots = simulated_runs(scenario, seed, range(number, number + 1))
+        sigma = np.broadcast_to(plots.sigma, plots.z.shape)
+        time = times if times.ndim == 1 else times[:, 0]
+        return walk(tracker, time, plots.z[:, 0], sigma[:, 0], true[:, 0])
+
+    return Later(work)
+
+
+HANDLERS = {
+    "run": Handler(run, ("trackers", "runs", "seed")),
+    "cancel": Handler(cancel, ("job",)),
+    "walk": Handler(walk_run, ("tracker", "run", "seed")),
+}

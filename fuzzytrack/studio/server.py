@@ -1,0 +1,107 @@
+"""The server of the studio: its port, its start and its end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import threading
+from collections.abc import Callable
+
+import uvicorn
+
+from fuzzytrack.studio.access import Access, check_token, new_token
+from fuzzytrack.studio.app import make_app
+from fuzzytrack.studio.limits import MESSAGE_BYTES
+from fuzzytrack.studio.pages import RunCommand, Studio
+
+__all__ = ["listen", "make_server", "serve"]
+
+LOCAL = "127.0.0.1"
+# A page that is open finds the server again at the same port after a start.
+_USUAL_PORT = 8098
+
+
+def serve(
+    folder: str | os.PathLike[str],
+    *,
+    host: str | None = None,
+    port: int | None = None,
+    token: str | None = None,
+    started: Callable[[str], None],
+    command: RunCommand | None = None,
+) -> None:
+    """Serve the studio until it is interrupted.
+
+    Parameters
+    ----------
+    folder : str or path
+        Rule bases, scenarios and recordings of the user; no others can be opened.
+    host : str, optional
+        Address to listen at; only this computer unless given, and then a token is needed too.
+    port : int, optional
+        0 for any free one; 8098 unless given, or any free one if that is in use.
+    token : str, optional
+        Secret in the address of the page; a random one unless given.
+    started : callable
+        Called with the address of the page as soon as it can be opened.
+    command : callable, optional
+        See `Studio`.
+
+    Raises
+    ------
+    ValueError
+        If the folder does not exist, a host is given without a token, or the port cannot be used.
+    """
+    if host is not None and token is None:
+        raise ValueError(
+            "host and token: others can reach an address that is not only of this computer; give a "
+            "token of your own too"
+        )
+    token = new_token() if token is None else check_token(token)
+    studio = Studio(folder, command)
+    with listen(host or LOCAL, port) as listening:
+        access = Access(host or LOCAL, listening.getsockname()[1], token)
+        server = make_server(studio, access)
+        threading.Thread(target=studio.warm, daemon=True).start()
+        started(f"http://{_written(access)}/#token={token}")
+        with contextlib.suppress(KeyboardInterrupt):
+            server.run(sockets=[listening])
+
+
+def make_server(studio: Studio, access: Access) -> uvicorn.Server:
+    """Make the server; it is given a socket that listens."""
+    config = uvicorn.Config(
+        make_app(studio, access),
+        log_config=None,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        date_header=False,
+        proxy_headers=False,
+        ws="websockets-sansio",
+        ws_max_size=MESSAGE_BYTES,
+        # Compressed messages could be small and yet fill the memory.
+        ws_per_message_deflate=False,
+        timeout_graceful_shutdown=1,
+    )
+    return uvicorn.Server(config)
+
+
+def _written(access: Access) -> str:
+    """Host and port in an address that a browser of this computer opens."""
+    host = {"0.0.0.0": LOCAL, "::": "::1"}.get(access.host, access.host)
+    return f"[{host}]:{access.port}" if ":" in host else f"{host}:{access.port}"
+
+
+def listen(host: str, port: int | None) -> socket.socket:
+    """A socket that listens; at any free port if none is given and the usual one is in use."""
+    ports = (_USUAL_PORT, 0) if port is None else (port,)
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    for each in ports:
+        try:
+            return socket.create_server((host, each), family=family)
+        except OSError as error:
+            failure = error
+    what = f"cannot listen at {host}, port {ports[-1]}: {failure.strerror}"
+    raise ValueError(f"port: {what}; give another, or 0 for any free one")

@@ -1,0 +1,89 @@
+"""Trackers as a page names them: the rule base in the editor, files of the folder, names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from fuzzytrack import specs
+from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.trackers.base import Tracker
+from fuzzytrack.trackers.catalog import as_trackers, catalog, tracker_of_rules
+
+__all__ = ["EDITOR", "MOST_TRACKERS", "SAVED", "listed_trackers", "make_trackers"]
+
+#: Names of the rule base as it is in the editor, and as it was last saved or opened.
+EDITOR, SAVED = "editor", "saved"
+#: Trackers of one job.
+MOST_TRACKERS = 40
+
+
+def make_trackers(
+    texts: Sequence[str],
+    edited: Callable[[str], RuleBase],
+    path: Callable[[str], Path],
+) -> dict[str, Tracker]:
+    """Make trackers of what a page names, each named by its text.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        As `fuzzytrack.trackers.catalog.make_tracker` reads them; files are those of the folder,
+        and ``editor`` and ``saved`` are rule bases of the page.
+    edited : callable
+        Gives the rule base of `EDITOR` or `SAVED`.
+    path : callable
+        Path of a file of the folder; refuses others.
+
+    Raises
+    ------
+    ValueError
+        If there are too many, or none, or one cannot be made.
+    """
+    if len(texts) > MOST_TRACKERS:
+        raise ValueError(f"trackers: {len(texts)}; at most {MOST_TRACKERS}")
+    named: dict[str, Tracker | str] = {}
+    for text in texts:
+        if text in named:
+            raise ValueError(f"trackers: {text!r} is given twice")
+        name, options = specs.split(text, "tracker")
+        for value in (*options.values(), name):
+            if "/" in value or "\\" in value:
+                raise ValueError(f"trackers: {text!r} names a file outside of the folder")
+            if specs.is_file(value) and value != name:
+                raise ValueError(f"trackers: {text!r}: a file cannot be a parameter here")
+        if name in (EDITOR, SAVED):
+            named[text] = _of_rules(text, edited(name), options)
+        elif specs.is_file(name):
+            named[text] = str(path(name)) + text.strip()[len(name) :]
+        else:
+            named[text] = text
+    return as_trackers(named)
+
+
+def _of_rules(text: str, rules: RuleBase, options: dict[str, str]) -> Tracker:
+    try:
+        return tracker_of_rules(rules, options)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"tracker {text!r}: {error}") from error
+
+
+def listed_trackers() -> list[dict[str, Any]]:
+    """All trackers that a page can choose from, with their parameters."""
+    return [
+        {
+            "name": entry.name,
+            "kind": entry.kind,
+            "help": entry.source,
+            "package": entry.package,
+            "parameters": [_parameter(each) for each in entry.parameters],
+        }
+        for entry in catalog()
+        if entry.kind != "normalization"
+    ]
+
+
+def _parameter(text: str) -> dict[str, str | None]:
+    name, sign, default = text.partition("=")
+    return {"name": name, "default": default if sign else None, "help": ""}

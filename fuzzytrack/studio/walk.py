@@ -1,0 +1,90 @@
+"""One run of a tracker, plot by plot: what it saw, what its rules said, what it made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
+from fuzzytrack.studio.rule_inputs import rule_inputs, scheduler_of
+from fuzzytrack.trackers.base import Tracker
+
+__all__ = ["MOST_STEPS", "walk"]
+
+#: Scans of a run that is walked.
+MOST_STEPS = 5_000
+# Rules of a plot, the strongest.
+_RULES = 4
+
+
+def walk(
+    tracker: Tracker, times: Array, z: Array, sigma: Array, truth: Array | None
+) -> Mapping[str, Any]:
+    """Walk one track.
+
+    Parameters
+    ----------
+    tracker : Tracker
+    times : ndarray, shape (n_steps,)
+        s.
+    z, sigma : ndarray, shape (n_steps, n_axes)
+        Plots and their standard deviations (m); NaN where missed.
+    truth : ndarray, shape (n_steps, n_axes), or None
+        m.
+
+    Returns
+    -------
+    dict
+        Arrays of scans by axes (``t`` and ``seen`` of scans): ``t``, ``seen``, ``coasted``,
+        ``truth``, ``plots``, ``predicted``, ``estimates``, ``innovations``, ``gains`` (``alpha``,
+        ``beta``, ``gamma``); and ``inputs``: for each scan a list of lanes, one for each axis or a
+        single one where all axes share their gains, each None or with ``values`` by name and the
+        strongest ``rules`` (``index`` from 0, ``text``, ``strength``).
+    """
+    if len(times) > MOST_STEPS:
+        raise ValueError(f"run: has {len(times)} scans; at most {MOST_STEPS} can be walked")
+    result = tracker.run(times, z, sigma)
+    gains = result.gains
+    return {
+        "t": times,
+        "seen": ~np.isnan(z).any(axis=1),
+        "coasted": result.coasted.any(axis=1),
+        "truth": truth,
+        "plots": z,
+        "predicted": result.predicted,
+        "estimates": result.filtered,
+        "innovations": result.innovation,
+        "gains": {"alpha": gains.alpha, "beta": gains.beta, "gamma": gains.gamma},
+        "inputs": _inputs(tracker, times, z, sigma, result.innovation),
+    }
+
+
+def _inputs(
+    tracker: Tracker, times: Array, z: Array, sigma: Array, innovation: Array
+) -> list[list[dict[str, Any] | None]]:
+    scheduler = scheduler_of(tracker)
+    found = rule_inputs(tracker, times, z, sigma)
+    if scheduler is None or found is None:
+        return [[] for _ in times]
+    started: list[bool] = np.any(~np.isnan(innovation), axis=1).tolist()
+    return [
+        [_lane(scheduler, values) if begun else None for values in lanes]
+        for lanes, begun in zip(found, started, strict=True)
+    ]
+
+
+def _lane(scheduler: FuzzyScheduler, values: Array) -> dict[str, Any] | None:
+    if np.isnan(values).any():
+        return None
+    point = dict(zip(scheduler.rules.input_names, values.tolist(), strict=True))
+    fired = scheduler.system.explain(**point)[:_RULES]
+    return {
+        "values": point,
+        "rules": [
+            {"index": each.number - 1, "text": str(each.rule), "strength": each.strength}
+            for each in fired
+        ],
+    }

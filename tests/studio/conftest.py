@@ -1,0 +1,141 @@
+import contextlib
+import json
+import struct
+import threading
+
+import numpy as np
+import pytest
+
+TOKEN = "a-token-of-the-tests"
+
+
+class Client:
+    """A page without a browser: sends commands, and waits for their answers."""
+
+    def __init__(self, socket):
+        self.socket = socket
+        self.events = []
+        self.seq = 0
+
+    def send(self, command, **arguments):
+        self.seq += 1
+        message = {"seq": self.seq, "command": command, "arguments": arguments}
+        self.socket.send(json.dumps(message))
+        return self.seq
+
+    def receive(self):
+        """The next message: its number and content; a surface as an array."""
+        message = self.socket.recv(timeout=60)
+        if isinstance(message, bytes):
+            seq, rows, columns, layers, *_ = struct.unpack("<6I", message[:24])
+            return seq, np.frombuffer(message[24:], "<f4").reshape(layers, rows, columns)
+        found = json.loads(message)
+        return found.get("seq"), found
+
+    def wait(self, seq):
+        while True:
+            number, found = self.receive()
+            if number == seq:
+                return found
+            self.events.append(found)
+
+    def ask(self, command, **arguments):
+        """Result of a command; fails if it is refused."""
+        found = self.wait(self.send(command, **arguments))
+        if isinstance(found, dict):
+            assert "result" in found, found
+            return found["result"]
+        return found
+
+    def refused(self, command, **arguments):
+        """The sentence with which a command is refused."""
+        return self.wait(self.send(command, **arguments))["error"]
+
+    def job(self, number):
+        """Events of a job, to its end."""
+        found = [e["job"] for e in self.events if e.get("event") == "job"]
+        while not found or found[-1]["state"] == "running":
+            message = self.receive()[1]
+            if message.get("event") == "job":
+                found.append(message["job"])
+        assert {each["id"] for each in found} == {number}
+        self.events.clear()
+        return found
+
+
+class Server:
+    """A server of the studio in this process, at a port of its own."""
+
+    def __init__(self, folder):
+        from fuzzytrack.studio.access import Access
+        from fuzzytrack.studio.pages import Studio
+        from fuzzytrack.studio.server import listen, make_server
+
+        self.folder = folder
+        self.studio = Studio(folder)
+        self.listening = listen("127.0.0.1", 0)
+        self.port = self.listening.getsockname()[1]
+        self.host = f"127.0.0.1:{self.port}"
+        self.server = make_server(self.studio, Access("127.0.0.1", self.port, TOKEN))
+        self.thread = threading.Thread(
+            target=self.server.run, kwargs={"sockets": [self.listening]}, daemon=True
+        )
+        self.thread.start()
+
+    def connect(self, *, origin=None, token=TOKEN, host=None, **options):
+        from websockets.sync.client import connect
+
+        address = f"ws://{host or self.host}/socket"
+        if host is not None:
+            options["address"] = "127.0.0.1", self.port
+        return connect(
+            address,
+            origin=origin or f"http://{self.host}",
+            subprotocols=["fuzzytrack", f"token.{token}"],
+            compression=None,
+            proxy=None,
+            max_size=None,
+            **options,
+        )
+
+    @contextlib.contextmanager
+    def page(self, session=None):
+        """A client that has said hello, with what it was told as `hello`."""
+        with self.connect() as socket:
+            client = Client(socket)
+            client.hello = client.ask("hello", session=session)
+            yield client
+
+    def close(self):
+        self.server.should_exit = True
+        self.thread.join(30)
+        self.listening.close()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    pytest.importorskip("uvicorn", reason="needs the extra studio")
+    found = Server(tmp_path_factory.mktemp("studio"))
+    yield found
+    found.close()
+
+
+@pytest.fixture
+def new_server():
+    """Start a server for a folder; it is closed with the test."""
+    pytest.importorskip("uvicorn", reason="needs the extra studio")
+    made = []
+
+    def start(folder):
+        made.append(Server(folder))
+        return made[-1]
+
+    yield start
+    for each in made:
+        each.close()
+
+
+@pytest.fixture
+def page(server):
+    with server.page() as client:
+        yield client

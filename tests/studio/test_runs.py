@@ -1,0 +1,96 @@
+"""Monte Carlo experiments of a page: the numbers of the command line, progress, and an end."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from fuzzytrack.cli.app import app
+
+TRACKERS = ["fixed:alpha=0.5377:beta=0.2018", "stiffness-damping"]
+
+
+def run_and_wait(page, **arguments):
+    return page.job(page.ask("run", **arguments)["job"])
+
+
+def run_script(text):
+    """Words of the lines that a script prints."""
+    printed = []
+    exec(text, {"print": lambda *words: printed.append([str(word) for word in words])})
+    return printed
+
+
+def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page):
+    page.ask("open_scenario", name="turn")
+    events = run_and_wait(page, trackers=["editor", *TRACKERS], runs=150, seed=3)
+    last = events[-1]
+    assert (last["state"], last["done"], last["of"]) == ("done", 150, 150)
+    assert [e["done"] for e in events] == sorted(e["done"] for e in events)
+    found = last["results"]
+    command = ["testbed", "turn", "--trackers", ",".join(TRACKERS), "--runs", "150", "--seed", "3"]
+    expected = json.loads(CliRunner().invoke(app, [*command, "--json"]).output)
+    # To the last digit, and the rule base in the editor is the shipped one still.
+    assert found["curves"] == {
+        **expected["curves"],
+        "editor": expected["curves"]["stiffness-damping"],
+    }
+    rows = {row["name"]: row for row in found["trackers"]}
+    for row in expected["trackers"]:
+        for name in ("predicted_rmse", "predicted_rmse_se", "filtered_mean", "peak"):
+            assert rows[row["name"]][name] == row[name]
+    assert found["operations"]["editor"]["per_update"] > 0
+    assert sum(found["distribution"]["counts"]["editor"]) == 150 * 18
+    sample = found["sample"]["trackers"]["editor"]["filtered"]
+
+    walked = page.ask("walk", tracker="editor", run=0, seed=3)
+    assert walked["estimates"] == sample
+    assert walked["inputs"][1] == [None, None]
+    lane = walked["inputs"][5][0]
+    explained = page.ask("explain", inputs=lane["values"])
+    assert lane["rules"][0]["index"] == explained["rules"][0]["index"]
+
+    assert "<img" in page.ask("report")["text"]
+    assert run_script(page.ask("snippet", what="python")["text"]) == [
+        [name, str(rows[name]["predicted_rmse"]), str(rows[name]["predicted_rmse_se"])]
+        for name in ["editor", *TRACKERS]
+    ]
+
+    visits = page.ask("visits")
+    # Two axes, and no rules are asked for the first two plots.
+    assert sum(map(sum, visits["counts"])) >= 150 * 18 * 2
+    gains = page.ask("gains")
+    assert sum(count for _, _, count in gains["visited"]) == 150 * 18 * 2
+
+    number = page.ask("run", trackers=["editor"], runs=100_000, seed=0)["job"]
+    assert "a job (run) is running" in page.refused("run", trackers=["editor"], runs=1)
+    # Edits go on meanwhile.
+    assert page.ask("set_cell", row=0, column=0, text="S-L")["state"]
+    page.ask("cancel", job=number)
+    assert page.job(number)[-1]["state"] == "cancelled"
+    assert page.ask("cancel", job=number)["job"]["state"] == "cancelled"
+    # The next one has new processes.
+    assert run_and_wait(page, trackers=["editor"], runs=5)[-1]["state"] == "done"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"runs": 10**9}, "runs: needs a whole number from 1 to 100000, got 1000000000"),
+        ({"runs": 0}, "runs: needs a whole number"),
+        ({"runs": 5, "seed": -1}, "seed: needs a whole number"),
+        ({"runs": 5, "trackers": []}, "trackers: needs a list of texts"),
+        ({"runs": 5, "trackers": ["no-such"]}, "no such tracker"),
+        ({"runs": 5, "trackers": ["../x.yaml"]}, "outside of the folder"),
+        ({"runs": 5, "trackers": ["missing.yaml"]}, "missing.yaml"),
+        ({"runs": 5, "trackers": ["editor", "editor"]}, "is given twice"),
+        ({"runs": 5, "trackers": ["editor:no=1"]}, "tracker 'editor:no=1': "),
+        ({"runs": 5, "trackers": [f"fixed:alpha=0.5:beta=0.{k}" for k in range(1, 42)]}, "at most"),
+        (
+            {"runs": 100_000, "trackers": [f"fixed:alpha=0.5:beta=0.{k}" for k in range(1, 40)]},
+            "GiB of memory; give at most",
+        ),
+    ],
+)
+def test_what_cannot_be_run_is_refused(page, arguments, message):
+    assert message in page.refused("run", **{"trackers": ["editor"], **arguments})
