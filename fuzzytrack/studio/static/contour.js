@@ -8,7 +8,7 @@ import { pictureMenu } from "./pictures.js";
 import { signOf } from "./rulebase.js";
 import { SHAPES } from "./shapes.js";
 import { makeStage } from "./stage.js";
-import { paletteOf, rangeOf, spotOf, visitShares } from "./surface.js";
+import { nameOf, paletteOf, rangeOf, spotOf, visitShares } from "./surface.js";
 
 export const title = "Contours";
 // Pixels of the colored image between two points of the surface.
@@ -112,9 +112,11 @@ function drawMap(pen, box, { values, point, palette, visits, shadeVisits }) {
   const scale = paletteOf(values, palette);
   const [x, y] = values.axes.map(axisOf);
   pen.image(colored(values, scale, range), box.left, box.top, box.width, box.height);
-  const levels = ticks(...range, 9);
+  // Where a difference is zero it is so over wide areas, whose edge would be noise.
+  const levels = ticks(...range, 9).filter((level) => !values.against || level !== 0);
   const lines = levels.map((level) => contour(values, level, box));
-  for (const line of lines) pen.segments(line, token("--contour"), 1);
+  const paint = token(values.against ? "--contour-dark" : "--contour");
+  for (const line of lines) pen.segments(line, paint, 1);
   if (shadeVisits && visits) drawVisits(pen, box, visits);
   label(pen, box, levels, lines);
   drawAxes(pen, box, x, y);
@@ -124,7 +126,7 @@ function drawMap(pen, box, { values, point, palette, visits, shadeVisits }) {
     { left: box.left + box.width + box.names + 10, top: box.top + 6, height: Math.min(180, box.height - 12) },
     scale,
     range,
-    signOf(values.output),
+    nameOf(values),
   );
   const spot = point && spotOf(values, point);
   if (spot) drawCross(pen, box, spot.shares);

@@ -1,6 +1,7 @@
 /* The bar at the top: the name of the rule base, open, save, undo, redo, export, looks, help. */
 
 import { PALETTES } from "./colors.js";
+import { ask } from "./dialogs.js";
 import { html } from "./elements.js";
 import { icon } from "./icons.js";
 import { menu } from "./menu.js";
@@ -94,29 +95,28 @@ export function mount(element, app) {
     const { state } = store.now;
     const box = html("input", { type: "text", spellcheck: "false", "aria-label": "Name of the file" });
     box.value = state.file ?? `${state.name}.yaml`;
-    const dialog = ask(
-      "Save the rule base in the folder",
-      [box],
-      [["Save", () => saveTo(box.value.trim(), false)]],
-    );
+    ask("Save the rule base in the folder", [box], [
+      ["Save", () => saveTo(box.value.trim(), false)],
+    ]);
     box.focus();
     box.setSelectionRange(0, box.value.replace(/\.ya?ml$/, "").length);
   }
 
   async function saveTo(file, overwrite) {
     const done = await app.edit("save", { name: file, overwrite }, ({ message }) => {
-      if (overwrite) say(message, "error");
+      const { files, state } = store.now;
+      const there = file === state.file || files.some(({ name: one }) => one === file);
+      if (overwrite || !there) say(message, "error");
       else {
         ask("It was not saved", [html("p", {}, message)], [
+          ["Replace it", () => saveTo(file, true)],
           ["Save under another name", saveAs],
-          ["Overwrite", () => saveTo(file, true)],
         ]);
       }
     });
     if (!done) return;
     say(`Saved as ${store.now.state.file}.`);
-    const { files } = await socket.send("files");
-    store.set({ files });
+    store.set(await socket.send("files"));
   }
 
   // ------------------------------------------------------------------ menus
@@ -189,48 +189,4 @@ export function mount(element, app) {
   });
 
   return { open, save, help };
-}
-
-/** A dialog with buttons [text, run]; the last one is the one that Enter presses. */
-export function ask(heading, content, actions) {
-  const dialog = html(
-    "dialog",
-    { "aria-label": heading, onclose: () => dialog.remove() },
-    html(
-      "form",
-      {
-        method: "dialog",
-        onsubmit: (event) => {
-          event.preventDefault();
-          dialog.close();
-          actions.at(-1)?.[1]();
-        },
-      },
-      html("h2", {}, heading),
-      content,
-      html(
-        "div",
-        { class: "buttons" },
-        html("button", { type: "button", onclick: () => dialog.close() }, actions.length ? "Cancel" : "Close"),
-        actions.map(([text, run], k) =>
-          html(
-            "button",
-            k === actions.length - 1
-              ? { type: "submit", class: "primary" }
-              : {
-                  type: "button",
-                  onclick: () => {
-                    dialog.close();
-                    run();
-                  },
-                },
-            text,
-          ),
-        ),
-      ),
-    ),
-  );
-  document.body.append(dialog);
-  dialog.showModal();
-  return dialog;
 }

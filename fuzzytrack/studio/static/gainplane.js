@@ -92,6 +92,7 @@ export function mount(element, app) {
       ...visited(place, gains.visited),
       ...current(place, explanation?.gains),
       ...axes(place, x, y, width, height),
+      ...legend(gains, explanation?.gains, width),
     );
   }
 
@@ -118,7 +119,8 @@ function nearby({ reachable, visited }) {
   return [0, 1].map((k) => {
     const [low, high] = span(points.map((pair) => pair[k]));
     const margin = 0.15 * (high - low);
-    return [Math.max(0, low - margin), high + margin];
+    // Above there is room for what the marks mean.
+    return [Math.max(0, low - margin), high + (k ? 3 : 1) * margin];
   });
 }
 
@@ -151,6 +153,21 @@ function visited(place, points = []) {
 function current(place, gains) {
   if (!Number.isFinite(gains?.alpha) || !Number.isFinite(gains?.beta)) return [];
   return [svg("circle", { class: "pin", cx: place.x(gains.alpha), cy: place.y(gains.beta), r: 5 })];
+}
+
+/** What the marks mean, in the upper right corner, where no stable gains are. */
+function legend({ visited: seen }, gains, width) {
+  const entries = [["reachable", "reachable"]];
+  if (seen?.length) entries.push(["visit", "last run"]);
+  if (gains) entries.push(["pin", "explained point"]);
+  return entries.flatMap(([kind, text], k) => {
+    const y = MARGIN.top + 16 + 18 * k;
+    const x = width - MARGIN.right - 16;
+    return [
+      svg("circle", { class: kind, cx: x, cy: y - 4, r: 4.5 }),
+      svg("text", { x: x - 12, y, "text-anchor": "end" }, text),
+    ];
+  });
 }
 
 function axes(place, x, y, width, height) {

@@ -17,7 +17,7 @@ const INITIAL = {
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
   // How.
-  points: 61, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
+  points: 61, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
   shadeVisits: false, palette: "viridis", scheme: "light",
 };
 const KEPT = [
@@ -96,6 +96,9 @@ store.follow(["connected", "hello"], ({ connected, hello }) => {
   line.textContent = connected ? "connected" : hello ? "no connection: trying again" : "connecting";
   line.classList.toggle("off", !connected);
 });
+
+// What went wrong is over with the next change that is made.
+store.follow(["state"], () => message.classList.contains("error") && say(""));
 
 // ---------------------------------------------------------------------- looks
 

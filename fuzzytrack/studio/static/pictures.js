@@ -6,7 +6,7 @@ import { menu } from "./menu.js";
 
 // What an SVG element of the page takes from its style sheet.
 const STYLES = [
-  "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin",
+  "fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "stroke-linecap",
   "opacity", "font-family", "font-size", "font-weight", "text-anchor", "dominant-baseline",
   "paint-order", "display",
 ];

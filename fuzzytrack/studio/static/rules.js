@@ -15,6 +15,7 @@ export function mount(element, app) {
   const grid = html("table", { class: "rules", role: "grid", "aria-label": "Rules" });
   const words = html("div", { class: "words" });
   const operators = html("div", { class: "operators" });
+  const about = html("p", { class: "about" });
   const complaints = html("div", { class: "complaints", "aria-live": "polite" });
   const coloring = html("span");
   let slots = [];
@@ -35,6 +36,7 @@ export function mount(element, app) {
     words,
     operators,
     complaints,
+    about,
   );
 
   // ------------------------------------------------------------------ the grid
@@ -152,7 +154,8 @@ export function mount(element, app) {
       refusal.remove();
     }
 
-    async function commit(move) {
+    /** Keep the text and go so many cells to the right. */
+    async function commit(right) {
       if (box.value.trim() !== before) {
         const done = await change(slot, box.value.trim(), ({ message }) => {
           refusal.textContent = `${sentence(message)} Esc leaves the cell as it was.`;
@@ -162,14 +165,13 @@ export function mount(element, app) {
         if (!done) return;
       }
       close();
-      const [down, right] = move;
-      (slots.find((one) => one.y === slot.y + down && one.x === slot.x + right) ?? slot).td.focus();
+      (slots.find((one) => one.y === slot.y && one.x === slot.x + right) ?? slot).td.focus();
     }
 
     box.addEventListener("keydown", (event) => {
       event.stopPropagation();
-      if (event.key === "Enter") commit([event.shiftKey ? -1 : 0, 0]);
-      else if (event.key === "Tab") commit([0, event.shiftKey ? -1 : 1]);
+      if (event.key === "Enter") commit(0);
+      else if (event.key === "Tab") commit(event.shiftKey ? -1 : 1);
       else if (event.key === "Escape") {
         close();
         slot.td.focus();
@@ -308,6 +310,7 @@ export function mount(element, app) {
       build(rulebase);
     }
     showOperators(rulebase);
+    about.textContent = rulebase.description;
     complaints.replaceChildren(...state.complaints.map((one) => complaintRow(one, () => goTo(one))));
     const outputs = outputsOf(rulebase);
     if (!outputs.includes(store.now.colorBy)) store.set({ colorBy: outputs[0] });

@@ -2,6 +2,7 @@
 
 import { lineColor, shareOf, token } from "./colors.js";
 import { check, choice, html, select, svg } from "./elements.js";
+import { ask } from "./dialogs.js";
 import { icon } from "./icons.js";
 import { shown, ticks, tidy, typed } from "./numbers.js";
 import { pictureMenu, svgFile } from "./pictures.js";
@@ -199,6 +200,7 @@ export function mount(element, app) {
       ? moved(before, corner, snapped(value, before.name, free), step() / 10)
       : shifted(before, snapStep(value - from, free));
     held.shapes = followed(before, parameters);
+    store.set({ dragging: true });
     draw();
     showNumbers();
     send(held.shapes, true);
@@ -222,6 +224,7 @@ export function mount(element, app) {
 
   /** The end of a drag or of keys: one step for undo. */
   function release() {
+    store.set({ dragging: false });
     if (!held?.shapes.length) {
       held = null;
       return;
@@ -240,6 +243,7 @@ export function mount(element, app) {
       .filter(({ name }) => shapes.some(({ set }) => set === name))
       .map(({ name, shape, parameters }) => ({ set: name, shape, parameters }));
     held = null;
+    store.set({ dragging: false });
     if (back.length) send(back, false);
     draw();
     showNumbers();
@@ -317,29 +321,35 @@ export function mount(element, app) {
   // ------------------------------------------------------------------ numbers
 
   function showNumbers() {
-    const chosen = chosenSet();
     const sets = setsNow();
-    const most = Math.max(...sets.map(({ parameters }) => parameters.length));
-    const structure = JSON.stringify([current().name, chosen, most, sets.map(({ name, shape }) => [name, shape])]);
+    const structure = JSON.stringify([
+      current().name, store.now.palette, store.now.scheme, sets.map(({ name, shape }) => [name, shape]),
+    ]);
     if (table.dataset.structure !== structure) {
       table.dataset.structure = structure;
-      fillTable(sets, most);
+      fillTable(sets);
     }
+    showHeads(sets);
     sets.forEach((one, k) => {
       const row = table.tBodies[0].rows[k];
+      row.classList.toggle("chosen", one.name === chosenSet());
       row.querySelectorAll("input.number").forEach((box, i) => {
         if (document.activeElement !== box || held) box.value = rounded(one.parameters[i]);
       });
     });
   }
 
-  function fillTable(sets, most) {
-    const [own, longest] = [
-      sets.find(({ name }) => name === chosenSet()),
-      sets.find(({ parameters }) => parameters.length === most),
-    ].map(({ shape }) => SHAPES[shape].parameters);
-    const head = ["set", "shape", ...longest.map((name, k) => own[k] ?? name)];
-    const heads = head.map((text) => html("th", { scope: "col" }, text));
+  /** The parameters of the chosen set stand over the columns. */
+  function showHeads(sets) {
+    const own = SHAPES[sets.find(({ name }) => name === chosenSet()).shape].parameters;
+    longest(sets).forEach((name, k) => {
+      table.tHead.rows[0].cells[2 + k].textContent = own[k] ?? name;
+    });
+  }
+
+  function fillTable(sets) {
+    const most = longest(sets).length;
+    const heads = ["set", "shape", ...longest(sets)].map((text) => html("th", { scope: "col" }, text));
     const last = html("th", { scope: "col" }, html("span", { class: "unseen" }, "remove"));
     table.replaceChildren(
       html("thead", {}, html("tr", {}, heads, last)),
@@ -361,7 +371,7 @@ export function mount(element, app) {
     const rest = Array.from({ length: most - fields.length }, () => html("td"));
     return html(
       "tr",
-      { class: one.name === chosenSet() ? "chosen" : null, onfocusin: () => store.set({ set: one.name }) },
+      { onfocusin: () => store.set({ set: one.name }) },
       html("th", { scope: "row" }, swatch, nameBox(one)),
       html("td", {}, shapeBox(one)),
       ...fields,
@@ -376,7 +386,7 @@ export function mount(element, app) {
             class: "quiet",
             title: `Remove ${one.name}`,
             "aria-label": `Remove ${one.name}`,
-            onclick: () => app.edit("remove_set", { variable: current().name, set: one.name }),
+            onclick: () => remove(one.name),
           },
           icon("remove"),
         ),
@@ -444,6 +454,15 @@ export function mount(element, app) {
     });
   }
 
+  function remove(set) {
+    const args = { variable: current().name, set, shared: store.now.shared };
+    app.edit("remove_set", args, ({ message }) =>
+      ask(`Remove ${set} from ${args.variable}?`, [html("p", {}, message)], [
+        ["Remove it with its rules", () => app.edit("remove_set", { ...args, with_rules: true })],
+      ]),
+    );
+  }
+
   function add() {
     const { name, sets, universe } = current();
     const [low, high] = universe;
@@ -481,7 +500,7 @@ export function mount(element, app) {
         ? [
             select(
               `${target.name} has the same sets as ${others}: what a change is for`,
-              [["both", `with ${others}`], ["apart", `${target.name} alone`]],
+              [["both", `${target.name} and ${others}`], ["apart", `${target.name} alone`]],
               shared,
               (value) => store.set({ shared: value }),
             ),
@@ -512,6 +531,12 @@ export function mount(element, app) {
 }
 
 // ---------------------------------------------------------------------- drawing
+
+/** Names of the parameters of a set that has most of them. */
+function longest(sets) {
+  const all = sets.map(({ shape }) => SHAPES[shape].parameters);
+  return all.reduce((best, one) => (one.length > best.length ? one : best));
+}
 
 /** A parameter as it fits its field; what is not typed anew keeps all its digits. */
 function rounded(parameter) {

@@ -204,6 +204,11 @@ export function paletteOf(values, palette) {
   return values.against ? "difference" : palette;
 }
 
+/** What the heights are. */
+export function nameOf({ output, against }) {
+  return against ? `Δ ${signOf(output)}` : signOf(output);
+}
+
 /** Share of a visited place from 0 to 1, on a logarithmic scale; null without visits. */
 export function visitShares(visits) {
   if (!visits) return null;
@@ -261,7 +266,7 @@ class Painter {
     this.#labels(pen);
     const high = Math.min(180, this.height - 90);
     const box = { left: this.width - 54, top: 32, height: high };
-    drawColorBar(pen, box, this.palette, this.range, signOf(this.values.output));
+    drawColorBar(pen, box, this.palette, this.range, nameOf(this.values));
   }
 
   #walls(pen) {

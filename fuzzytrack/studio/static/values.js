@@ -2,13 +2,16 @@
 
 import { drawable } from "./rulebase.js";
 
+// Points on each axis while a set is dragged, when a new surface comes many times a second.
+const COARSE = 41;
+
 /** Follow the rule base and what is chosen; `store.values` is what can be drawn. */
 export function followValues(app) {
   const { socket, store, say } = app;
   let asked = "";
 
   async function ask(now) {
-    const { state, shown, against, points, point, connected } = now;
+    const { state, shown, against, dragging, point, connected } = now;
     const rulebase = state?.rulebase;
     if (!rulebase || !connected) return;
     const possible = drawable(rulebase);
@@ -17,6 +20,7 @@ export function followValues(app) {
       return;
     }
     const axes = rulebase.inputs.slice(0, 2);
+    const points = dragging ? Math.min(now.points, COARSE) : now.points;
     const args = { outputs: [shown], columns: points, against };
     if (rulebase.inputs.length > 2) args.at = others(rulebase, point);
     // Undo and redo make new versions, so a version tells whether there is something new.
@@ -46,7 +50,7 @@ export function followValues(app) {
     }
   }
 
-  store.follow(["state", "shown", "against", "points", "point", "connected"], ask);
+  store.follow(["state", "shown", "against", "points", "dragging", "point", "connected"], ask);
   store.follow(["connected"], ({ connected }) => {
     if (!connected) asked = "";
   });
