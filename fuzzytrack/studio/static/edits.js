@@ -24,10 +24,11 @@ export function makeEdits(socket, store, say) {
     busy = true;
     const { command, args, refused, resolve, sent } = queue.shift();
     try {
-      const { state } = await socket.send(command, args);
+      const { state, scenario } = await socket.send(command, args);
       undrawn.splice(0, undrawn.length - MOST_TIMES);
       undrawn.push({ command, sent, answered: performance.now(), version: state.version });
-      store.set({ state });
+      // Undo and redo may change the scenario too.
+      store.set(scenario ? { state, scenario } : { state });
       resolve(true);
     } catch (error) {
       refused(error);

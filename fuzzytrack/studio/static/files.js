@@ -17,6 +17,9 @@ const KEYS = [
   ["Arrows on a corner of a set", "move it, with Shift ten times as far; Esc takes it back"],
   ["Alt while dragging", "no snapping"],
   ["Shift Arrows on the surface", "move the explained point"],
+  ["Ctrl Enter", "run the experiment"],
+  ["Arrows on a way-point", "move it, with Shift ten times as far; Delete removes it"],
+  ["+, − and 0 on a map", "zoom, and show the whole track; arrows move the map"],
   ["?", "these keys"],
 ];
 
@@ -133,30 +136,8 @@ export function mount(element, app) {
       { text: "YAML", note: file, run: () => download(file, state.text, "application/yaml") },
       ...asked
         .filter(([command]) => app.can(command))
-        .map(([command, args, text]) => ({ text, run: () => fetchText(command, args, text) })),
+        .map(([command, args, text]) => ({ text, run: () => keepText(app, command, args, text) })),
     ];
-  }
-
-  async function fetchText(command, args, text) {
-    try {
-      const found = await socket.send(command, args);
-      if (command === "report") download(found.name, found.text, "text/html");
-      else showText(text, found.text);
-    } catch (error) {
-      say(error.message, "error");
-    }
-  }
-
-  function showText(heading, text) {
-    ask(heading, [html("pre", { class: "snippet", tabindex: 0 }, text)], [
-      [
-        "Copy",
-        () => navigator.clipboard.writeText(text).then(
-          () => say("Copied."),
-          () => say("The browser does not let the page copy: select the text and press Ctrl C.", "error"),
-        ),
-      ],
-    ]);
   }
 
   function looks() {
@@ -189,4 +170,27 @@ export function mount(element, app) {
   });
 
   return { open, save, help };
+}
+
+/** Ask the server for a text that keeps what is on screen; a report becomes a file, others are shown. */
+export async function keepText({ socket, say }, command, args, heading) {
+  try {
+    const { name, text } = await socket.send(command, args);
+    if (command === "report") download(name, text, "text/html");
+    else showText(say, heading, text);
+  } catch (error) {
+    say(error.message, "error");
+  }
+}
+
+function showText(say, heading, text) {
+  ask(heading, [html("pre", { class: "snippet", tabindex: 0 }, text)], [
+    [
+      "Copy",
+      () => navigator.clipboard.writeText(text).then(
+        () => say("Copied."),
+        () => say("The browser does not let the page copy: select the text and press Ctrl C.", "error"),
+      ),
+    ],
+  ]);
 }

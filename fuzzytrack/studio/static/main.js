@@ -4,6 +4,7 @@ import { makeEdits } from "./edits.js";
 import { choice, html } from "./elements.js";
 import { followPoint } from "./explain.js";
 import * as files from "./files.js";
+import { followScenario } from "./scenario.js";
 import { connect } from "./socket.js";
 import { makeStore } from "./store.js";
 import { followValues } from "./values.js";
@@ -13,16 +14,24 @@ const INITIAL = {
   // From the server.
   connected: false, session: null, hello: null, state: null, files: [], shipped: [], values: null,
   valuesError: null, explanation: null, gains: null, visits: null, runs: 0,
+  scenario: null, job: null, results: null, asked: null, tracked: null, tuned: null, uploads: [],
   // What is looked at.
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
+  resultsTab: "all", hidden: [], sorting: { key: null, down: false }, quantity: "predicted", band: "se",
+  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, trackShown: 0,
+  axisShown: 0,
   // How.
   points: 61, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
   shadeVisits: false, palette: "viridis", scheme: "light",
+  trackers: [], wantedRuns: 200, seed: 0, sigma: null, tuneOn: "scenario",
+  tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },
 };
 const KEPT = [
   "session", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "point", "camera",
   "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
+  "asked", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
+  "trackers", "wantedRuns", "seed", "sigma", "tuneOn", "tuning",
 ];
 const SCHEME = "fuzzytrack scheme";
 
@@ -48,7 +57,7 @@ const app = {
   wantedScheme: () => localStorage.getItem(SCHEME),
   setScheme,
 };
-Object.assign(app, followPoint(app));
+Object.assign(app, followPoint(app), { scenario: followScenario(app) });
 followValues(app);
 
 /** Tabs of the rules: the table, or the text it stands in. */

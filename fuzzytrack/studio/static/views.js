@@ -1,17 +1,22 @@
 /* The views of the rail, and the panes that each of them shows; a pane may be in several views. */
 
 import * as contour from "./contour.js";
+import * as data from "./data.js";
 import { html } from "./elements.js";
 import * as explain from "./explain.js";
 import * as gainplane from "./gainplane.js";
 import { icon } from "./icons.js";
+import * as results from "./results.js";
 import * as rules from "./rules.js";
+import * as run from "./run.js";
 import * as sets from "./sets.js";
 import * as surface from "./surface.js";
 import * as text from "./text.js";
+import * as tune from "./tune.js";
+import * as world from "./world.js";
 
 // Modules of panes by name: each has `title` and `mount(element, app)`.
-const PANES = { rules, text, sets, surface, contour, explain, gains: gainplane };
+const PANES = { rules, text, sets, surface, contour, explain, gains: gainplane, world, run, results, data, tune };
 
 // A view without panes has no place in the rail.
 const VIEWS = [
@@ -27,9 +32,9 @@ const VIEWS = [
     picture: "surface",
     panes: ["surface", "contour", "gains", "explain"],
   },
-  { id: "world", title: "World", picture: "map", panes: [] },
-  { id: "run", title: "Run & results", picture: "run", panes: [] },
-  { id: "data", title: "Data", picture: "data", panes: [] },
+  { id: "world", title: "World", picture: "map", panes: ["world"] },
+  { id: "run", title: "Run & results", picture: "run", panes: ["run", "results"] },
+  { id: "data", title: "Data", picture: "data", panes: ["data", "tune"] },
 ];
 
 /** Whether a view shows a pane. */

@@ -1,0 +1,78 @@
+/* Fields of forms: a number or a text with its name and unit, sent when it is left or on Enter. */
+
+import { html } from "./elements.js";
+import { shown, typed } from "./numbers.js";
+
+let made = 0;
+
+/** A number; `change(value)` hears of a new one. `show(value)` shows one. */
+export function numberField(label, unit, change, { least = -Infinity, whole = false, title = "" } = {}) {
+  const id = `field-${(made += 1)}`;
+  const input = html("input", { id, type: "text", inputmode: "decimal", autocomplete: "off", title });
+  let current = null;
+
+  function leave() {
+    if (input.value === written(current)) return;
+    const value = typed(input.value);
+    const wrong = !Number.isFinite(value) || value < least || (whole && !Number.isInteger(value));
+    input.setAttribute("aria-invalid", String(wrong));
+    if (wrong) return;
+    current = value;
+    change(value);
+  }
+
+  function show(value) {
+    current = value ?? null;
+    input.removeAttribute("aria-invalid");
+    if (document.activeElement !== input || input.value === "") input.value = written(current);
+  }
+
+  input.addEventListener("change", leave);
+  input.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") {
+      input.value = written(current);
+      input.removeAttribute("aria-invalid");
+    }
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    leave();
+  });
+  const element = html(
+    "div",
+    { class: "field" },
+    html("label", { for: id }, label),
+    html("span", { class: "with-unit" }, input, html("span", { class: "unit" }, unit)),
+  );
+  return { element, input, show };
+}
+
+/** A group of fields under a heading. */
+export function group(heading, ...children) {
+  return html("section", { class: "group" }, html("h3", {}, heading), ...children);
+}
+
+/** A button that does something that takes a while; it cannot be pressed twice. */
+export function action(text, run, attributes = {}) {
+  const button = html(
+    "button",
+    {
+      type: "button",
+      ...attributes,
+      onclick: async () => {
+        if (button.getAttribute("aria-disabled") === "true") return;
+        button.setAttribute("aria-disabled", "true");
+        try {
+          await run();
+        } finally {
+          button.removeAttribute("aria-disabled");
+        }
+      },
+    },
+    text,
+  );
+  return button;
+}
+
+function written(value) {
+  return value === null || value === undefined ? "" : shown(value, 8);
+}

@@ -1,0 +1,52 @@
+/* How the lines of trackers look: a color each, then dashes, the same in every picture. */
+
+import { html, svg } from "./elements.js";
+
+export const COLORS = 6;
+const DASHES = [null, "6 3", "2 2.5"];
+
+/** Attributes of the line of tracker number `index`. */
+export function lineStyle(index) {
+  return {
+    class: `line c${index % COLORS}`,
+    "stroke-dasharray": DASHES[Math.floor(index / COLORS) % DASHES.length],
+  };
+}
+
+/** Class of what is filled in the color of a tracker. */
+export function fillClass(index) {
+  return `area c${index % COLORS}`;
+}
+
+/** A piece of the line of a tracker, for tables and legends. */
+export function swatch(index) {
+  return svg(
+    "svg",
+    { class: "line-swatch", width: 22, height: 10, viewBox: "0 0 22 10", "aria-hidden": "true" },
+    svg("line", { ...lineStyle(index), x1: 1, x2: 21, y1: 5, y2: 5 }),
+  );
+}
+
+/** What the lines of a picture are, for its heading: [[name, index], ...]. */
+export function keyOf(lines) {
+  return html(
+    "span",
+    { class: "line-key" },
+    lines.map(([name, index]) => html("span", {}, swatch(index), name)),
+  );
+}
+
+/** SVG path of points; a new stroke begins where one is not finite. */
+export function pathOf(points) {
+  const words = [];
+  let pen = "M";
+  for (const [x, y] of points) {
+    if (!Number.isFinite(x) || !Number.isFinite(y)) {
+      pen = "M";
+      continue;
+    }
+    words.push(`${pen}${x.toFixed(1)} ${y.toFixed(1)}`);
+    pen = "L";
+  }
+  return words.join("");
+}

@@ -1,0 +1,155 @@
+/* The trackers that are chosen: one a row, with its parameters; added from all that are known. */
+
+import { check, html } from "./elements.js";
+import { icon } from "./icons.js";
+import { menu } from "./menu.js";
+
+// What the rule base on screen is called among trackers, and as it was last saved.
+export const OWN = [["editor", "the rule base on screen"], ["saved", "as it was last saved"]];
+
+/** Trackers of a text: its name, and its parameters as [[name, value]]. */
+export function splitTracker(text) {
+  const [name, ...parts] = text.split(":");
+  return { name, parameters: parts.map((part) => part.split(/=(.*)/s).slice(0, 2)) };
+}
+
+function joined(name, parameters) {
+  return [name, ...parameters.filter(([, value]) => value !== "").map((pair) => pair.join("="))].join(":");
+}
+
+/** The list; `store.trackers` is [{text, on}]. */
+export function trackerList({ store }) {
+  const rows = html("ul", { class: "picks" });
+  const element = html("div", { class: "chosen-trackers" }, rows, html("div", { class: "actions" }, adder(), menu("Choose many", "Choose", many)));
+  const open = new Set();
+
+  function change(trackers) {
+    store.set({ trackers });
+  }
+
+  function put(index, part) {
+    change(store.now.trackers.map((each, k) => (k === index ? { ...each, ...part } : each)));
+  }
+
+  function add(text) {
+    const { trackers } = store.now;
+    const known = trackers.findIndex((each) => each.text === text);
+    if (known >= 0) put(known, { on: true });
+    else change([...trackers, { text, on: true }]);
+  }
+
+  function adder() {
+    return menu("Add a tracker", [icon("add"), "Add"], () => {
+      const { hello, files } = store.now;
+      const kinds = [...new Set(hello.trackers.map(({ kind }) => kind))];
+      const own = files.filter(({ kind }) => kind === "rulebase");
+      const entry = (name) => ({ text: name, run: () => add(name) });
+      return [
+        { heading: "On this page" },
+        ...OWN.map(([name, note]) => ({ text: name, note, run: () => add(name) })),
+        ...(own.length ? [{ heading: "In the folder" }, ...own.map(({ name }) => entry(name))] : []),
+        ...kinds.flatMap((kind) => [
+          { heading: `${kind[0].toUpperCase()}${kind.slice(1)}s` },
+          ...hello.trackers.filter((each) => each.kind === kind).map(({ name }) => entry(name)),
+        ]),
+      ];
+    });
+  }
+
+  function many() {
+    const { scenario, hello, trackers } = store.now;
+    const all = (texts) => change(texts.map((text) => ({ text, on: true })));
+    const own = scenario?.scenario?.trackers ?? [];
+    return [
+      { text: "Those of the scenario, and the editor", run: () => all(["editor", ...own]) },
+      {
+        text: "All that are registered",
+        run: () => all(["editor", ...hello.trackers.filter(runnable).map(({ name }) => name)]),
+      },
+      { text: "None", run: () => change(trackers.map((each) => ({ ...each, on: false }))) },
+    ];
+  }
+
+  function rowOf({ text, on }, index) {
+    const { name, parameters } = splitTracker(text);
+    const known = store.now.hello?.trackers.find((each) => each.name === name);
+    const names = known?.parameters ?? [];
+    const form = names.length ? formOf(index, name, parameters, names) : null;
+    const label = name === "editor" ? `editor: ${store.now.state?.name}` : name;
+    const chosen = check(label, on, (value) => put(index, { on: value }), known?.help ?? text);
+    const told = parameters.map((pair) => pair.join("=")).join(", ");
+    return html(
+      "li",
+      {},
+      html(
+        "div",
+        { class: "pick" },
+        chosen,
+        html(
+          "button",
+          {
+            type: "button",
+            class: "quiet",
+            title: `Remove ${text}`,
+            "aria-label": `Remove ${text}`,
+            onclick: () => change(store.now.trackers.filter((_, k) => k !== index)),
+          },
+          icon("remove"),
+        ),
+      ),
+      form
+        ? html(
+            "details",
+            {
+              open: open.has(text),
+              ontoggle: (event) => (event.currentTarget.open ? open.add(text) : open.delete(text)),
+            },
+            html("summary", {}, told || (names.length > 1 ? `${names.length} parameters` : "1 parameter")),
+            form,
+          )
+        : told
+          ? html("p", { class: "muted told" }, told)
+          : null,
+    );
+  }
+
+  function formOf(index, name, parameters, names) {
+    const given = Object.fromEntries(parameters);
+    return html(
+      "div",
+      { class: "form-grid" },
+      names.map((parameter) => {
+        const { name: key, default: usual } = parameter;
+        const input = html("input", {
+          type: "text",
+          value: given[key] ?? "",
+          placeholder: usual ?? "",
+          autocomplete: "off",
+          spellcheck: "false",
+          onchange: () => {
+            const others = parameters.filter(([each]) => each !== key);
+            const text = joined(name, [...others, [key, input.value.trim()]]);
+            open.add(text);
+            put(index, { text });
+          },
+        });
+        return html("label", { class: "field", title: parameter.help }, html("span", { class: "label" }, key), input);
+      }),
+    );
+  }
+
+  store.follow(["trackers", "hello", "scenario"], ({ trackers, hello }) => {
+    if (!hello) return;
+    const inside = rows.contains(document.activeElement);
+    const place = inside ? [...rows.querySelectorAll("input, button, summary")].indexOf(document.activeElement) : -1;
+    rows.replaceChildren(...trackers.map(rowOf));
+    // The row was drawn anew: the focus goes back to where it was.
+    if (inside) [...rows.querySelectorAll("input, button, summary")].at(place)?.focus();
+  });
+  return { element };
+}
+
+/** Whether a tracker can be run without being told a number. */
+function runnable({ parameters }) {
+  return parameters.every((each) => each.default !== null);
+}
