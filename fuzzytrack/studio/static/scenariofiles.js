@@ -1,7 +1,7 @@
 /* Opening and saving of scenarios: those that are shipped, and files of the folder. */
 
 import { html } from "./elements.js";
-import { ask } from "./dialog.js";
+import { ask } from "./dialogs.js";
 import { menu } from "./menu.js";
 import { download } from "./pictures.js";
 
