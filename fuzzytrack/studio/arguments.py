@@ -36,6 +36,18 @@ class Arguments:
         """Whether an argument is given as a text."""
         return isinstance(self._given.get(name), str)
 
+    def is_list(self, name: str) -> bool:
+        """Whether an argument is given as a list."""
+        return isinstance(self._given.get(name), list)
+
+    def objects(self, name: str) -> list[Arguments]:
+        """A list of objects, at least one, each read as arguments."""
+        self._missing(name, _NEEDED, "a list of objects")
+        found = self._items(name, "a list of objects")
+        if not found or not all(isinstance(each, dict) for each in found):
+            raise ValueError(f"{name}: needs a list of objects, at least one")
+        return [Arguments(each) for each in found]
+
     def text(self, name: str, default: Any = _NEEDED, longest: int = _LONGEST) -> Any:
         """A text of at most so many characters."""
         if self._missing(name, default, "a text"):

@@ -1,7 +1,12 @@
-"""All commands of the page by name."""
+"""All commands of the page by name, and the first one that it sends."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
+from fuzzytrack.fuzzy.loading import shipped_rulebases
+from fuzzytrack.simulation.scenario_files import scenario_source, shipped_scenarios
 from fuzzytrack.studio import (
     export_handlers,
     rule_handlers,
@@ -9,12 +14,41 @@ from fuzzytrack.studio import (
     surface_handlers,
     world_handlers,
 )
-from fuzzytrack.studio.handlers import Handler
+from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.handlers import Handler, Later
+from fuzzytrack.studio.limits import LIMITS
+from fuzzytrack.studio.pages import Page
+from fuzzytrack.studio.rule_handlers import listed_files, state_of
+from fuzzytrack.studio.world_handlers import scenario_state
 from fuzzytrack.yamltree import quoted, suggestion
 
 __all__ = ["HANDLERS", "find_handler"]
 
+
+def hello(page: Page, given: Arguments) -> Later:
+    """All that a page needs when it is opened."""
+    state, scenario = state_of(page), scenario_state(page)
+    job = page.job
+
+    def work() -> Mapping[str, Any]:
+        return {
+            "session": page.key,
+            "state": state,
+            "scenario": scenario,
+            "files": listed_files(page.studio.folder),
+            "shipped": shipped_rulebases(),
+            "scenarios": [{"name": n, "source": scenario_source(n)} for n in shipped_scenarios()],
+            "trackers": page.studio.trackers(),
+            "commands": list(HANDLERS),
+            "limits": LIMITS,
+            "job": None if job is None else job.as_json(True),
+        }
+
+    return Later(work)
+
+
 HANDLERS: dict[str, Handler] = {
+    "hello": Handler(hello, ("session",)),
     **rule_handlers.HANDLERS,
     **surface_handlers.HANDLERS,
     **world_handlers.HANDLERS,

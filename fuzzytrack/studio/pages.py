@@ -53,8 +53,6 @@ class Page:
     ----------
     version : int
         Grows with every change.
-    drags : int
-        Drags that have ended; the changes of one are undone together.
     job : Job or None
         The last one that the page has started.
     run : Run or None
@@ -67,7 +65,7 @@ class Page:
         self.session = session
         self._lock = threading.Lock()
         self.version = 0
-        self.drags = 0
+        self._drags = 0
         self.job: Job | None = None
         self.run: Run | None = None
         self.used = time.monotonic()
@@ -88,6 +86,16 @@ class Page:
             yield
         finally:
             self._lock.release()
+
+    def gesture(self, draft: bool) -> str:
+        """Name of the drag that goes on, whose changes are undone together; the last is no draft.
+
+        A change by itself is a drag of its own.
+        """
+        name = f"drag {self._drags}"
+        if not draft:
+            self._drags += 1
+        return name
 
     @property
     def connected(self) -> bool:

@@ -6,48 +6,26 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.simulation.scenario_files import scenario_source, shipped_scenarios
+from fuzzytrack.fuzzy.text_edits import EditedText
 from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.commands import edited
 from fuzzytrack.studio.complaints import Complaint
 from fuzzytrack.studio.folder import Folder
-from fuzzytrack.studio.handlers import Handler, Later
-from fuzzytrack.studio.limits import LIMITS
+from fuzzytrack.studio.handlers import Handler
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.state import cell_place, rulebase_state, shared_sets
 from fuzzytrack.studio.world_handlers import scenario_state
 
-__all__ = ["HANDLERS", "state_of"]
+__all__ = ["HANDLERS", "changed", "listed_files", "state_of"]
 
 Answer = Mapping[str, Any]
 
 _KIND = re.compile(r"^(rulebase|scenario)[ \t]*:", re.MULTILINE)
 _KINDS = {"rulebase": "rules", "scenario": "scenario", None: "other"}
 _SHARED = ("both", "apart")
-
-
-def hello(page: Page, given: Arguments) -> Later:
-    """All that a page needs when it is opened."""
-    state, scenario = state_of(page), scenario_state(page)
-    job = page.job
-
-    def work() -> Answer:
-        return {
-            "session": page.key,
-            "state": state,
-            "scenario": scenario,
-            "files": _files(page.studio.folder),
-            "shipped": shipped_rulebases(),
-            "scenarios": [{"name": n, "source": scenario_source(n)} for n in shipped_scenarios()],
-            "trackers": page.studio.trackers(),
-            "limits": LIMITS,
-            "job": None if job is None else job.as_json(True),
-        }
-
-    return Later(work)
 
 
 def state_of(page: Page) -> dict[str, Any]:
@@ -139,10 +117,29 @@ def set_shape(page: Page, given: Arguments) -> Answer:
     }
     if "shape" in given:
         arguments["shape"] = given.choice("shape", tuple(SHAPES))
-    gesture = f"drag {page.drags}"
-    if not given.flag("draft"):
-        page.drags += 1
-    return _edit(page, "shape", arguments, gesture)
+    return _edit(page, "shape", arguments, page.gesture(given.flag("draft")))
+
+
+def set_shapes(page: Page, given: Arguments) -> Answer:
+    """Change several sets of a variable at once, as neighbors that share a corner."""
+    gesture = page.gesture(given.flag("draft"))
+    common = {
+        "variable": given.text("variable"),
+        "apart": given.choice("shared", _SHARED, "both") == "apart",
+        "symmetric": given.flag("symmetric"),
+    }
+    also: dict[tuple[str, str], None] = {}
+    text = page.session.texts.rules.text
+    for each in given.objects("shapes"):
+        arguments = {**common, "set": each.text("set"), "parameters": each.numbers("parameters")}
+        if "shape" in each:
+            arguments["shape"] = each.choice("shape", tuple(SHAPES))
+        new = edited(text, "shape", arguments)
+        assert isinstance(new, EditedText)  # the command is one of rule bases
+        also |= dict.fromkeys(new.also)
+        text = str(new)
+    page.session.replace("rules", text, gesture)
+    return {**changed(page), "also": [{"variable": v, "set": s} for v, s in also]}
 
 
 def _set_named(given: Arguments) -> dict[str, Any]:
@@ -215,7 +212,7 @@ def open_rules(page: Page, given: Arguments) -> Answer:
 def save(page: Page, given: Arguments) -> Answer:
     """Save the rule base in the folder."""
     page.session.save("rules", _file_name(page, given), overwrite=given.flag("overwrite"))
-    return {**changed(page), "files": _files(page.studio.folder)}
+    return {**changed(page), "files": listed_files(page.studio.folder)}
 
 
 def _file_name(page: Page, given: Arguments) -> str:
@@ -226,10 +223,11 @@ def _file_name(page: Page, given: Arguments) -> str:
 
 def files(page: Page, given: Arguments) -> Answer:
     """Files of the folder."""
-    return {"files": _files(page.studio.folder)}
+    return {"files": listed_files(page.studio.folder)}
 
 
-def _files(folder: Folder) -> list[dict[str, Any]]:
+def listed_files(folder: Folder) -> list[dict[str, Any]]:
+    """Files of a folder with their kinds: rules, scenario, recording, other."""
     return [
         {"name": each.name, "size": each.size, "kind": _kind(folder, each.name)}
         for each in folder.list()
@@ -247,12 +245,12 @@ def _kind(folder: Folder, name: str) -> str:
 
 
 HANDLERS = {
-    "hello": Handler(hello, ("session",)),
     "set_cell": Handler(set_cell, ("row", "column", "text", "symmetric")),
     "set_rule": Handler(set_rule, ("index", "text", "symmetric")),
     "set_shape": Handler(
         set_shape, ("variable", "set", "shape", "parameters", "shared", "symmetric", "draft")
     ),
+    "set_shapes": Handler(set_shapes, ("variable", "shapes", "shared", "symmetric", "draft")),
     "add_set": Handler(add_set, ("variable", "set", "shape", "parameters", "shared", "like")),
     "remove_set": Handler(remove_set, ("variable", "set", "shared", "with_rules")),
     "rename_set": Handler(rename_set, ("variable", "set", "name", "shared")),

@@ -14,6 +14,7 @@ from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.run_jobs import Run, run_work
+from fuzzytrack.studio.run_results import paired_as_json
 from fuzzytrack.studio.tracker_texts import EDITOR, make_trackers
 from fuzzytrack.studio.walk import walk
 from fuzzytrack.testbed.montecarlo import simulated_runs
@@ -84,8 +85,19 @@ def walk_run(page: Page, given: Arguments) -> Later:
     return Later(work)
 
 
+def paired(page: Page, given: Arguments) -> Later:
+    """Difference of two trackers of the last experiment, run by run, and over time."""
+    first, second = given.text("first"), given.text("second")
+    run = page.run
+    if run is None or run.results is None:
+        raise ValueError("first: there are no results yet; run an experiment to its end first")
+    results = run.results
+    return Later(lambda: paired_as_json(results, first, second))
+
+
 HANDLERS = {
     "run": Handler(run, ("trackers", "runs", "seed")),
     "cancel": Handler(cancel, ("job",)),
+    "paired": Handler(paired, ("first", "second")),
     "walk": Handler(walk_run, ("tracker", "run", "seed")),
 }

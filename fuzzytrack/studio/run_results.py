@@ -14,7 +14,7 @@ from fuzzytrack.testbed.results import Results
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
-__all__ = ["operations", "results_as_json"]
+__all__ = ["operations", "paired_as_json", "results_as_json"]
 
 _BARS = 40
 _BAND = (0.1, 0.9)
@@ -87,6 +87,50 @@ def _sample(found: Results) -> dict[str, Any]:
         "plots": sample.plots,
         "seen": ~np.isnan(sample.plots).any(axis=-1),
         "trackers": trackers,
+    }
+
+
+def paired_as_json(found: Results, first: str, second: str) -> dict[str, Any]:
+    """Difference of the errors of prediction of two trackers, second minus first.
+
+    Parameters
+    ----------
+    found : Results
+    first, second : str
+        Names of trackers.
+
+    Returns
+    -------
+    dict
+        ``difference`` of the RMSE of a run, its standard error ``se``, and its interval, ``low`` to
+        ``high`` at ``level``, over ``runs``; ``over_time``: for each scan the mean ``difference``
+        of the distances, with its ``se``.
+
+    Raises
+    ------
+    ValueError
+        If there is no such tracker.
+    """
+    pair = found.paired_difference(first, second)
+    a, b = (found.predicted_distance[found.names.index(name)] for name in (first, second))
+    difference = np.where(found.compared, b - a, np.nan)
+    counts = found.compared.sum(axis=0)
+    known = np.where(found.compared, b - a, 0.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = known.sum(axis=0) / counts
+        spread = np.where(found.compared, np.square(difference - mean), 0.0).sum(axis=0)
+        error = np.sqrt(spread / (counts - 1) / counts)
+    return {
+        "first": first,
+        "second": second,
+        "quantity": "predicted_rmse",
+        "difference": pair.difference,
+        "se": pair.standard_error,
+        "low": pair.low,
+        "high": pair.high,
+        "level": pair.level,
+        "runs": pair.runs,
+        "over_time": {"difference": mean, "se": error},
     }
 
 

@@ -11,12 +11,18 @@ import numpy as np
 
 from fuzzytrack.errors import FileError, ScenarioError
 from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario
-from fuzzytrack.studio.scenario_edits import Entry, set_entries
 from fuzzytrack.yamltree import Document, Node, is_number
 from fuzzytrack.yamltree import Mapping as MappingNode
 from fuzzytrack.yamltree import Sequence as ListNode
+from fuzzytrack.yamlvalues import Value, remove_value, set_value
 
-__all__ = ["scenario_as_json", "section_of", "waypoint_times", "with_sensors", "with_target"]
+__all__ = [
+    "Entry", "scenario_as_json", "section_of", "waypoint_times", "with_sampling", "with_sensors",
+    "with_target",
+]  # fmt: skip
+
+#: A number, a word, numbers, or points.
+Entry = Value
 
 _OF_WAYPOINTS = ("waypoints", "leg", "times", "period")
 _OF_EVERY_MOTION = ("motion", "speed", "heading", "start", "steps", "period")
@@ -54,8 +60,9 @@ def with_target(text: str, given: Mapping[str, Entry]) -> str:
         # Numbers of another motion would be refused.
         kept = _OF_MOTION if now.get("motion") == given["motion"] else _OF_EVERY_MOTION
     drop = [name for name in now if name not in kept]
-    drop += ["leg"] if "times" in given else ["times"] if "leg" in given else []
-    return set_entries(text, "target", given, drop)
+    other = {"times": "leg", "leg": "times"}
+    drop += [other[name] for name in given if other.get(name) in now]
+    return _with_entries(text, "target", given, drop)
 
 
 def with_sensors(text: str, given: Mapping[str, Entry]) -> str:
@@ -73,7 +80,35 @@ def with_sensors(text: str, given: Mapping[str, Entry]) -> str:
     """
     now = section_of(text, "sensors") or {}
     kept = _OF_NOISE if "sigma" in given else _OF_GRID if "grid" in given else tuple(now)
-    return set_entries(text, "sensors", given, [name for name in now if name not in kept])
+    return _with_entries(text, "sensors", given, [name for name in now if name not in kept])
+
+
+def with_sampling(text: str, given: Mapping[str, Entry]) -> str:
+    """Text with another sampling; the regular one if nothing is given.
+
+    Raises
+    ------
+    ScenarioError
+        As for `with_target`.
+    """
+    now = section_of(text, "sampling")
+    if not given:
+        return text if now is None else remove_value(text, ["sampling"], failure=ScenarioError)
+    if now is None:
+        # A mapping that is not there yet is written as a whole.
+        entries = ", ".join(f"{name}: {value}" for name, value in given.items())
+        end = "" if text.endswith("\n") else "\n"
+        return f"{text}{end}\nsampling: {{{entries}}}\n"
+    return _with_entries(text, "sampling", given, [name for name in now if name not in given])
+
+
+def _with_entries(text: str, section: str, given: Mapping[str, Entry], drop: Sequence[str]) -> str:
+    """Text with entries of a part of it set, or added, and others removed."""
+    for name, value in given.items():
+        text = set_value(text, [section, name], value, failure=ScenarioError)
+    for name in dict.fromkeys(drop):
+        text = remove_value(text, [section, name], failure=ScenarioError)
+    return text
 
 
 def section_of(text: str, section: str) -> dict[str, Any] | None:

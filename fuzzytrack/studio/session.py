@@ -181,8 +181,14 @@ class Session:
             raise ValueError(f"text: is longer than {MAX_BYTES // 1024} KiB; make it shorter")
         self._put(kind, replace(self._open_text(kind), text=text), gesture)
 
-    def edit_scenario(self, text: str) -> None:
+    def edit_scenario(self, text: str, gesture: str | None = None) -> None:
         """Replace the text of the scenario by another one that loads.
+
+        Parameters
+        ----------
+        text : str
+        gesture : str, optional
+            As for `do`.
 
         Raises
         ------
@@ -190,7 +196,7 @@ class Session:
             If it does not, or is too long; nothing has changed.
         """
         self._scenario_of(self.texts.scenario.name, text)
-        self.replace("scenario", text)
+        self.replace("scenario", text, gesture)
 
     def undo(self) -> bool:
         """Undo the last edit of either text; False if there is none."""

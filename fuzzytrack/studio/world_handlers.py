@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from fuzzytrack.simulation.sampling import PATTERNS
 from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.handlers import Handler
 from fuzzytrack.studio.pages import Page
-from fuzzytrack.studio.scenario_edits import Entry
 from fuzzytrack.studio.scenario_text import (
+    Entry,
     scenario_as_json,
     section_of,
     waypoint_times,
+    with_sampling,
     with_sensors,
     with_target,
 )
@@ -51,6 +53,7 @@ def scenario_state(page: Page) -> dict[str, Any]:
         "scenario": scenario_as_json(session.reading.scenario),
         "target": section_of(opened.text, "target"),
         "sensors": section_of(opened.text, "sensors"),
+        "sampling": section_of(opened.text, "sampling"),
     }
 
 
@@ -94,7 +97,8 @@ def set_waypoints(page: Page, given: Arguments) -> Answer:
         entries["leg"] = _mean_leg(page)
     if "period" in given:
         entries["period"] = given.number("period")
-    return _put(page, with_target(page.session.texts.scenario.text, entries))
+    gesture = page.gesture(given.flag("draft"))
+    return _put(page, with_target(page.session.texts.scenario.text, entries), gesture)
 
 
 def _count_of_times(page: Page) -> int:
@@ -138,9 +142,21 @@ def set_sensors(page: Page, given: Arguments) -> Answer:
     return _put(page, with_sensors(page.session.texts.scenario.text, entries))
 
 
-def _put(page: Page, text: str) -> Answer:
+def set_sampling(page: Page, given: Arguments) -> Answer:
+    """Let the target be seen at other times; regularly without a kind."""
+    entries: dict[str, Entry] = {}
+    if "kind" in given:
+        kind = given.choice("kind", tuple(p for p in PATTERNS if p != "regular"))
+        values = given.numbers("value") if given.is_list("value") else given.number("value")
+        entries[kind] = values
+    if "period" in given:
+        entries["period"] = given.number("period")
+    return _put(page, with_sampling(page.session.texts.scenario.text, entries))
+
+
+def _put(page: Page, text: str, gesture: str | None = None) -> Answer:
     """Take a text that loads; another one is refused, and nothing has changed."""
-    page.session.edit_scenario(text)
+    page.session.edit_scenario(text, gesture)
     return _changed(page)
 
 
@@ -154,7 +170,8 @@ HANDLERS = {
     "open_scenario": Handler(open_scenario, ("name",)),
     "save_scenario": Handler(save_scenario, ("name", "overwrite")),
     "set_scenario_text": Handler(set_scenario_text, ("text",)),
-    "set_waypoints": Handler(set_waypoints, ("points", "speed", "leg", "period")),
+    "set_waypoints": Handler(set_waypoints, ("points", "speed", "leg", "period", "draft")),
     "set_motion": Handler(set_motion, ("motion", *_OF_MOTION, "start", "steps")),
+    "set_sampling": Handler(set_sampling, ("kind", "value", "period")),
     "set_sensors": Handler(set_sensors, ("grid", "spacing", *_OF_SENSORS)),
 }

@@ -115,9 +115,14 @@ class Server:
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     pytest.importorskip("uvicorn", reason="needs the extra studio")
-    found = Server(tmp_path_factory.mktemp("studio"))
-    yield found
-    found.close()
+    from fuzzytrack.studio import jobs
+
+    with pytest.MonkeyPatch.context() as patch:
+        # A second process takes as long to start as it saves.
+        patch.setattr(jobs, "_processes", lambda: 1)
+        found = Server(tmp_path_factory.mktemp("studio"))
+        yield found
+        found.close()
 
 
 @pytest.fixture

@@ -26,6 +26,7 @@ def test_a_new_page_has_all_that_it_shows(page):
     trackers = {each["name"]: each for each in found["trackers"]}
     assert {"name": "alpha", "default": None, "help": ""} in trackers["fixed"]["parameters"]
     assert found["limits"]["runs"] == 100_000
+    assert {"set_shapes", "paired", "certify"} <= set(found["commands"])
 
 
 def test_edits_change_the_text_and_can_be_undone(page):
@@ -56,6 +57,21 @@ def test_a_drag_is_undone_as_one(page):
     page.ask("set_shape", variable="E", set="ze", parameters=[-0.2, 0, 0.2], draft=True)
     assert page.ask("set_shape", variable="E", set="ze", parameters=[-0.25, 0, 0.25])
     assert page.ask("undo")["state"]["undo"] == 1
+
+
+def test_neighbors_that_share_a_corner_move_along(page):
+    shapes = [
+        {"set": "ze", "parameters": [-0.1, 0, 0.12]},
+        {"set": "ps", "parameters": [0, 0.12, 0.3]},
+    ]
+    found = page.ask("set_shapes", variable="E", shapes=shapes)
+    assert {each["set"] for each in found["also"]} == {"ze", "ps"}
+    assert found["state"]["undo"] == 1
+    text = found["state"]["text"]
+    wrong = [{**shapes[0], "parameters": [-0.1, 0, 0.2]}, {"set": "no", "parameters": [1]}]
+    assert "no set 'no'" in page.refused("set_shapes", variable="E", shapes=wrong)
+    assert page.ask("set_text", text=text)["state"]["text"] == text
+    assert page.ask("undo")["state"]["saved"]
 
 
 def test_a_text_that_does_not_load_keeps_the_last_rule_base(page):

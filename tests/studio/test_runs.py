@@ -56,6 +56,12 @@ def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page):
         for name in ["editor", *TRACKERS]
     ]
 
+    paired = page.ask("paired", first="editor", second=TRACKERS[0])
+    row = next(row for row in expected["trackers"] if row["name"] == "stiffness-damping")
+    assert paired["difference"] == pytest.approx(-row["change"])
+    assert len(paired["over_time"]["se"]) == 20
+    assert "no such tracker" in page.refused("paired", first="editor", second="no")
+
     visits = page.ask("visits")
     # Two axes, and no rules are asked for the first two plots.
     assert sum(map(sum, visits["counts"])) >= 150 * 18 * 2

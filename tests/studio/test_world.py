@@ -30,6 +30,27 @@ def test_a_point_that_is_moved_leaves_comments_where_they_are(page):
     assert text["target"]["leg"] == 480
 
 
+def test_a_drag_of_a_point_is_undone_as_one(page):
+    page.ask("open_scenario", name="waypoints")
+    points = page.ask("scenario")["state"]["target"]["waypoints"]
+    for x in (100, 200, 300):
+        points[2][0] = x
+        page.ask("set_waypoints", points=points, draft=True)
+    assert page.ask("set_waypoints", points=points)["state"]["undo"] == 2
+    assert page.ask("undo")["scenario"]["target"]["waypoints"][2][0] == 4000
+
+
+def test_the_times_of_scans_are_chosen(page):
+    found = page.ask("set_sampling", kind="burst", value=[3, 10])["state"]
+    assert found["sampling"] == {"burst": [3, 10]}
+    found = page.ask("set_sampling", kind="jitter", value=0.2, period=50)["state"]
+    assert found["sampling"] == {"jitter": 0.2, "period": 50}
+    assert page.refused("set_sampling", kind="jitter", value=0.9)
+    found = page.ask("set_sampling")["state"]
+    assert found["sampling"] is None
+    assert found["complaints"] == []
+
+
 def test_sensors_become_a_field_and_noise_again(page):
     page.ask("open_scenario", name="turn")
     field = {"grid": 5, "spacing": "sparse", "reach": 20000, "range_sigma": 14, "bearing_sigma": 3}
