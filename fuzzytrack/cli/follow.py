@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import gc
-import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Timer
 
-from fuzzytrack.cli.complaints import one_line, printable
-from fuzzytrack.cli.interrupts import Interrupts
+from fuzzytrack.cli.complaints import printable
+from fuzzytrack.cli.live_run import LiveRun, SavedState
 from fuzzytrack.cli.noise_words import noise_sentence
 from fuzzytrack.cli.output import say_aside, say_notes
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT
@@ -25,8 +24,6 @@ from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.live import LiveTracks
 from fuzzytrack.recordings.live_feed import LiveFeed
 from fuzzytrack.recordings.live_state import LiveState
-from fuzzytrack.recordings.resumed_lines import ResumedLines
-from fuzzytrack.recordings.state_file import StateFile
 
 __all__ = ["FollowOptions", "follow"]
 
@@ -44,29 +41,25 @@ class FollowOptions:
 
     Attributes
     ----------
-    lateness, forget, state, feed
+    lateness, forget
         See the command.
+    saved : SavedState
+        Its state.
     compiled : bool
         Whether to compile before the first answer.
     """
 
     lateness: float | None = None
     forget: float | None = None
-    state: str | None = None
-    feed: str | None = None
+    saved: SavedState = field(default_factory=SavedState)
     compiled: bool = True
-
-    def __post_init__(self) -> None:
-        if self.feed not in (None, "again", "onward"):
-            raise ValueError(f"--feed: expected again or onward, got {self.feed!r}")
-        if self.feed is not None and self.state is None:
-            raise ValueError("--feed: says how to go on from a state; --state names its file")
 
     def check_unused(self) -> None:
         """Raise ValueError if one is given, for a command that follows no feed."""
-        for name in ("lateness", "forget", "state", "feed"):
+        for name in ("lateness", "forget"):
             if getattr(self, name) is not None:
                 raise ValueError(f"--{name}: is for a live feed; give --follow as well")
+        self.saved.check_unused()
         if not self.compiled:
             raise ValueError("--no-compile: is for a live feed; give --follow as well")
 
@@ -109,7 +102,7 @@ def follow(
     thresholds = gc.get_threshold()
     target = LineTarget(None if output == STANDARD_OUTPUT else output)
     try:
-        _Run(feed, lines, target, options).go()
+        LiveRun(feed, lines, target, lambda: _say_sums(feed), options.saved, LiveState).go()
     finally:
         target.close()
         gc.set_threshold(*thresholds)
@@ -125,8 +118,7 @@ def _check(files: list[str], output: str | None, options: FollowOptions) -> None
         raise ValueError(
             f"--output: {output}: needs the whole recording; --follow writes CSV or lines of JSON"
         )
-    if options.state is not None and Path(options.state).resolve() == Path(output).resolve():
-        raise ValueError("--state: is the file of --output; name another")
+    options.saved.check(output)
 
 
 def _begin(tracks: LiveTracks, lines: LineStream, compiled: bool) -> None:
@@ -152,76 +144,10 @@ def _begin(tracks: LiveTracks, lines: LineStream, compiled: bool) -> None:
     gc.set_threshold(*gc.get_threshold()[:2], _NEVER)
 
 
-class _Run:
-    """A run from the first line to the last."""
-
-    def __init__(
-        self, feed: LiveFeed, lines: LineStream, target: LineTarget, options: FollowOptions
-    ) -> None:
-        self.feed, self.lines, self.target = feed, lines, target
-        self._resumed: ResumedLines | None = None
-        self._state = None if options.state is None else StateFile(options.state)
-        if self._state is not None and os.path.exists(self._state.path):
-            state = LiveState.load(self._state.path)
-            state.resume(feed, self._state.path)
-            target.resume(state.written)
-            if options.feed != "onward":
-                self._resumed = ResumedLines(state)
-            say_aside(f"goes on after line {state.lines} of the feed")
-
-    def go(self) -> None:
-        """Answer lines until they end or the user ends it, or until nobody reads the answers."""
-        with Interrupts() as interrupts:
-            try:
-                self._answer_all(interrupts)
-                if self._state is not None and self.feed.tracks is not None:
-                    self._save(self._state)
-                    self._state.wait()
-            except BrokenPipeError:
-                # The answers since the last save have not been read, so that stays.
-                pass
-            finally:
-                if self.feed.tracks is not None:
-                    _say_sums(self.feed, self.feed.tracks)
-        if interrupts.wanted:
-            raise KeyboardInterrupt
-
-    def _answer_all(self, interrupts: Interrupts) -> None:
-        while not interrupts.wanted:
-            timeout = None if self._state is None else self._state.due_in
-            lines = interrupts.wait(lambda: self.lines.take(timeout))  # noqa: B023
-            if lines is None:
-                break
-            if self._resumed is not None:
-                lines = self._resumed.new(lines)
-            if lines:
-                self._answer(lines)
-            if self._state is not None and self._state.due_in == 0.0:
-                self._save(self._state)
-        if not interrupts.wanted:
-            if self._resumed is not None:
-                self._resumed.finish()
-            self.feed.finish()
-
-    def _save(self, state: StateFile) -> None:
-        """Save the state; a run goes on without, as long as it can say so."""
-        try:
-            state.save(self.feed, self.target.written)
-        except OSError as error:
-            why = one_line(error).removeprefix("error: ")
-            say_aside(f"{state.path}: the state was not saved: {why}")
-
-    def _answer(self, lines: list[bytes]) -> None:
-        answers = self.feed.push(lines)
-        if answers:
-            self.target.write(self.feed.header, answers)
-        # Before the first row there is nothing to save.
-        if self._state is not None and self.feed.tracks is not None:
-            self._state.has_changed = True
-
-
-def _say_sums(feed: LiveFeed, tracks: LiveTracks) -> None:
+def _say_sums(feed: LiveFeed) -> None:
     """Print what there was, on standard error."""
+    tracks = feed.tracks
+    assert tracks is not None
     counts = tracks.counts
     again = ""
     if tracks.lateness:

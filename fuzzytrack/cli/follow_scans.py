@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import gc
 import sys
-from contextlib import suppress
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from fuzzytrack.cli.complaints import printable
-from fuzzytrack.cli.interrupts import Interrupts
+from fuzzytrack.cli.live_run import LiveRun, SavedState, Stream
 from fuzzytrack.cli.noise_words import noise_sentence
 from fuzzytrack.cli.output import say_aside, say_notes
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT
@@ -25,6 +24,7 @@ from fuzzytrack.io.track_formats import is_geo
 from fuzzytrack.plurals import counted
 from fuzzytrack.recordings.scan_feed import ScanFeed
 from fuzzytrack.recordings.scan_plots import ScanPlots
+from fuzzytrack.recordings.scan_state import ScanState
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scan_tracker import ScanTracker
 
@@ -34,19 +34,13 @@ __all__ = ["follow_scans"]
 _NEVER = 1_000_000_000
 
 
-class _Stream(Protocol):
-    """Items of a feed as they come."""
-
-    def take(self, timeout: float | None = None) -> list[bytes] | None:
-        """Take those that are there; none if none has come in time, None at the end."""
-
-
 def follow_scans(
     files: list[str],
     reading: Reading,
     scanner: ScanTracker,
     how: dict[str, Any],
     output: str | None,
+    saved: SavedState,
     **options: Any,
 ) -> None:
     """Answer the items of a feed until it ends.
@@ -59,17 +53,20 @@ def follow_scans(
         As for `ScanFeed`.
     output : str or None
         File for the answers.
+    saved : SavedState
+        File of the state.
     **options
         As for `ScanFeed`.
 
     Raises
     ------
     KeyboardInterrupt
-        If the user ends it, after what is held has been answered.
+        If the user ends it, after what is held has been answered, or is saved.
     ValueError, DataError, OSError
         As the other commands.
     """
     _check(files, output)
+    saved.check(output)
     feed = ScanFeed(
         reading,
         scanner,
@@ -87,16 +84,12 @@ def follow_scans(
     gc.set_threshold(*thresholds[:2], _NEVER)
     target = LineTarget(None if output == STANDARD_OUTPUT else output)
     try:
-        with Interrupts() as interrupts, suppress(BrokenPipeError):
-            _answer_all(feed, stream, target, interrupts)
-        _say_sums(feed)
+        LiveRun(feed, stream, target, lambda: _say_sums(feed), saved, ScanState).go()
     finally:
         target.close()
         gc.set_threshold(*thresholds)
         if isinstance(stream, DatagramStream):
             stream.close()
-    if interrupts.wanted:
-        raise KeyboardInterrupt
 
 
 def _check(files: list[str], output: str | None) -> None:
@@ -113,7 +106,7 @@ def _check(files: list[str], output: str | None) -> None:
         raise ValueError(f"--output: {output}: {more}--follow writes CSV or lines of JSON")
 
 
-def _stream(place: str) -> _Stream:
+def _stream(place: str) -> Stream:
     if is_address(place):
         return DatagramStream(place)
     if sys.stdin is None:
@@ -129,26 +122,6 @@ def _begin(plots: ScanPlots, scanner: ScanTracker) -> None:
     say_aside(f"configuration: {scanner.name}")
     say_aside(f"sigma: {noise_sentence(decoder) or 'that of the configuration'}")
     say_notes((*plots.files.notes, *plots.findings.notes))
-
-
-def _answer_all(
-    feed: ScanFeed, stream: _Stream, target: LineTarget, interrupts: Interrupts
-) -> None:
-    """Answer items until the feed ends, or the user ends it."""
-    silent = False
-    while not interrupts.wanted:
-        timeout = None if silent else feed.pause_after
-        items = interrupts.wait(lambda: stream.take(timeout))  # noqa: B023
-        if items is None:
-            break
-        silent = not items
-        answers = feed.pause() if silent else feed.push(items)
-        if answers:
-            target.write(feed.header, answers)
-    if not interrupts.wanted or feed.stream is not None:
-        answers = feed.finish()
-        if answers:
-            target.write(feed.header, answers)
 
 
 def _say_sums(feed: ScanFeed) -> None:

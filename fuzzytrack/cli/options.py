@@ -11,7 +11,9 @@ from fuzzytrack.plugins.scripts import load_script
 from fuzzytrack.yamltree import suggestion
 
 __all__ = [
+    "LIVE",
     "Dt",
+    "FeedWay",
     "Folder",
     "Force",
     "Gate",
@@ -22,12 +24,16 @@ __all__ = [
     "ScenarioOrNone",
     "Seed",
     "Sigma",
+    "StateFile",
     "lags",
     "load_plugins",
     "names",
     "numbers_at",
     "pairs",
 ]
+
+#: Heading of options of live feeds in the help.
+LIVE = "Live feeds"
 
 Plots = Annotated[str, typer.Argument(metavar="FILE", help="CSV (or Parquet) file.")]
 Gate = Annotated[
@@ -57,6 +63,24 @@ Plugins = Annotated[
     list[str] | None,
     typer.Option(
         "--plugin", metavar="FILE.py", help="Load plug-ins from a script; may be repeated."
+    ),
+]
+StateFile = Annotated[
+    str | None,
+    typer.Option(
+        "--state",
+        metavar="FILE",
+        help="With --follow, save the state, and go on from it.",
+        rich_help_panel=LIVE,
+    ),
+]
+FeedWay = Annotated[
+    str | None,
+    typer.Option(
+        "--feed",
+        metavar="again|onward",
+        help="From a state, lines come from the first one again, or go on. [default: again]",
+        rich_help_panel=LIVE,
     ),
 ]
 

@@ -10,6 +10,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import printable
+from fuzzytrack.cli.live_run import SavedState
 from fuzzytrack.cli.noise_words import noise_json, noise_sentence
 from fuzzytrack.cli.output import print_json, print_table, progress, say, say_notes
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["scan"]
 
 # Headings in the help.
-_SCANS, _TRACKS, _LIVE = "Scans", "Tracks", "Live feeds"
+_SCANS, _TRACKS = "Scans", "Tracks"
 _HEADS = {
     "scans": "scans",
     "empty_scans": "empty",
@@ -195,9 +196,11 @@ def scan(
             "--follow",
             help="Read lines from standard input (-) or ASTERIX from udp://127.0.0.1:PORT, and "
             "answer each scan at once.",
-            rich_help_panel=_LIVE,
+            rich_help_panel=options.LIVE,
         ),
     ] = False,
+    state: options.StateFile = None,
+    feed: options.FeedWay = None,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
@@ -216,6 +219,7 @@ def scan(
         "sectors": sectors,
     }
     chosen = _names(output_columns, "--output-columns")
+    saved = SavedState(state, feed)
     if follow:
         for option, given in (("--plot", plot), ("--animate", animate)):
             if given is not None:
@@ -228,12 +232,14 @@ def scan(
             scanner_with(config, tracker),
             how,
             output,
+            saved,
             output_columns=chosen,
             tentative=tentative,
             json=json,
             quote_formulas=quote_formulas,
         )
         return
+    saved.check_unused()
     if output == STANDARD_OUTPUT and json:
         raise ValueError("--json: -o - writes the tracks to standard output; name a file")
     if output_columns is not None and output is None:

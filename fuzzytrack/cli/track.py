@@ -11,6 +11,7 @@ import typer
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import printable
 from fuzzytrack.cli.follow import FollowOptions, follow
+from fuzzytrack.cli.live_run import SavedState
 from fuzzytrack.cli.noise_words import noise_json, noise_sentence
 from fuzzytrack.cli.output import (
     print_json,
@@ -41,7 +42,7 @@ __all__ = ["track"]
 
 
 # Headings in the help.
-_LARGE_JOBS, _LIVE = "Large recordings", "Live feeds"
+_LARGE_JOBS = "Large recordings"
 # Bytes of a file above which it is tracked in pieces by default.
 _LARGE = 100_000_000
 # With more tracks than this, only totals are printed.
@@ -121,7 +122,7 @@ def track(
         typer.Option(
             "--follow",
             help="Read lines from standard input, and answer each at once.",
-            rich_help_panel=_LIVE,
+            rich_help_panel=options.LIVE,
         ),
     ] = False,
     lateness: Annotated[
@@ -129,7 +130,7 @@ def track(
         typer.Option(
             metavar="S",
             help="With --follow, put plots up to S seconds late in place. [default: 0]",
-            rich_help_panel=_LIVE,
+            rich_help_panel=options.LIVE,
         ),
     ] = None,
     forget: Annotated[
@@ -137,31 +138,17 @@ def track(
         typer.Option(
             metavar="S",
             help="With --follow, forget tracks silent for S seconds.",
-            rich_help_panel=_LIVE,
+            rich_help_panel=options.LIVE,
         ),
     ] = None,
-    state: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE",
-            help="With --follow, save the state, and go on from it.",
-            rich_help_panel=_LIVE,
-        ),
-    ] = None,
-    feed: Annotated[
-        str | None,
-        typer.Option(
-            metavar="again|onward",
-            help="From a state, lines come from the first one again, or go on. [default: again]",
-            rich_help_panel=_LIVE,
-        ),
-    ] = None,
+    state: options.StateFile = None,
+    feed: options.FeedWay = None,
     compiled: Annotated[
         bool,
         typer.Option(
             "--compile/--no-compile",
             help="With --follow, compile before answering.",
-            rich_help_panel=_LIVE,
+            rich_help_panel=options.LIVE,
         ),
     ] = True,
     plugin: options.Plugins = None,
@@ -174,7 +161,7 @@ def track(
     options.load_plugins(plugin)
     width = gate_width(gate)
     live = FollowOptions(
-        lateness=lateness, forget=forget, state=state, feed=feed, compiled=compiled
+        lateness=lateness, forget=forget, saved=SavedState(state, feed), compiled=compiled
     )
     if follow_feed:
         _check_follow(plot, chunk_rows, jobs, scheduler)

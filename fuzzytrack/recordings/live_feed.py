@@ -124,6 +124,16 @@ class LiveFeed:
         self.read = Findings()
 
     @property
+    def begun(self) -> bool:
+        """Whether there was a row."""
+        return self.tracks is not None
+
+    @property
+    def pause_after(self) -> None:
+        """Answers do not wait for other lines."""
+        return None
+
+    @property
     def is_json(self) -> bool:
         """Whether answers are lines of JSON; False as long as that is not known."""
         if self._json is not None:
@@ -190,13 +200,18 @@ class LiveFeed:
                 return held + self._answers(texts[k + 1 :], first + k + 1)
         return b""
 
-    def finish(self) -> None:
-        """End the feed; DataError if there was no row that could be answered."""
+    def pause(self) -> bytes:
+        """Nothing waits for other lines."""
+        return b""
+
+    def finish(self) -> bytes:
+        """End the feed, which nothing waits for; DataError if no row could be answered."""
         if self.tracks is None:
             if self._columns is None and not self.faults.counts:
                 # Raises what is wrong with the first lines, if anything is.
                 recognize(FEED, self.head, self.reading.form)
             raise no_rows(FEED)
+        return b""
 
     def findings(self) -> Findings:
         """What was left out or put right so far, notes included."""

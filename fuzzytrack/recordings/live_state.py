@@ -3,67 +3,32 @@
 from __future__ import annotations
 
 import json
-import zipfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.files import PathLike, whole_file
+from fuzzytrack.io.files import PathLike
 from fuzzytrack.recordings.live import LiveTracks
 from fuzzytrack.recordings.live_feed import LiveFeed
 from fuzzytrack.recordings.recent_rows import RecentRows, Row
-from fuzzytrack.reprs import summary
+from fuzzytrack.recordings.run_state import RunState
 
 __all__ = ["LiveState"]
 
-_FORMAT, _VERSION = "fuzzytrack live state", 1
 # Bytes of the digest of an answer.
 _DIGEST = 8
 
 
-@dataclass(frozen=True, eq=False)
-class LiveState:
-    """State of a live run: arrays of numbers, and the rest in the types of JSON.
+class LiveState(RunState):
+    """State of a live run of tracks with identities, see `RunState`."""
 
-    Attributes
-    ----------
-    facts : dict
-        Options, tracker, first lines, counts, identities of the tracks.
-    arrays : dict of ndarray
-        Numbers of the tracks, and their last rows.
-    """
-
-    facts: dict[str, Any]
-    arrays: dict[str, NDArray[Any]]
-
-    def __repr__(self) -> str:
-        return summary(self, lines=self.lines, tracks=len(self.facts["ids"]))
-
-    @property
-    def lines(self) -> int:
-        """Lines of the feed that were taken."""
-        return int(self.facts["lines"])
-
-    @property
-    def checksum(self) -> int:
-        """CRC-32 of these lines."""
-        return int(self.facts["checksum"])
-
-    @property
-    def beginning(self) -> tuple[int, int]:
-        """How many lines the feed begins with that say how it is read, and their CRC-32."""
-        number, checksum = self.facts["beginning"]
-        return int(number), int(checksum)
-
-    @property
-    def written(self) -> int:
-        """Bytes of the output that hold the answers to these lines."""
-        return int(self.facts["written"])
+    format = "fuzzytrack live state"
+    version = 1
+    run = "track"
 
     @classmethod
     def of(cls, feed: LiveFeed, written: int) -> LiveState:
@@ -79,8 +44,6 @@ class LiveState:
         assert tracks is not None
         read = feed.read
         facts: dict[str, Any] = {
-            "format": _FORMAT,
-            "version": _VERSION,
             "options": feed.options,
             "tracker": tracks.prepared.spec,
             "digest": feed.digest,
@@ -100,54 +63,6 @@ class LiveState:
             arrays |= _rows_of(tracks, ids)
         return cls(json.loads(json.dumps(facts)), arrays)
 
-    def save(self, path: PathLike) -> None:
-        """Write the state to a file, whole or not at all.
-
-        Parameters
-        ----------
-        path : str or path
-
-        Raises
-        ------
-        OSError
-            If it cannot be written.
-        """
-        facts = np.frombuffer(json.dumps(self.facts).encode(), dtype=np.uint8)
-        with whole_file(path) as draft, open(draft, "xb") as file:
-            np.savez(file, facts=facts, **self.arrays)  # type: ignore[arg-type]
-
-    @classmethod
-    def load(cls, path: PathLike) -> LiveState:
-        """Read a state from a file; no code in it is run.
-
-        Parameters
-        ----------
-        path : str or path
-
-        Raises
-        ------
-        DataError
-            If it is no such file, or one of another version.
-        OSError
-            If it cannot be read.
-        """
-        try:
-            with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
-                arrays = dict(file)
-            facts = json.loads(arrays.pop("facts").tobytes())
-            is_state = facts["format"] == _FORMAT
-            version = facts["version"]
-        except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile):
-            is_state, version = False, None
-        if not is_state:
-            raise DataError(f"{path}: is no state of a live run; name another file")
-        if version != _VERSION:
-            raise DataError(
-                f"{path}: is of version {version}, and this release reads {_VERSION}; remove it to "
-                "begin anew"
-            )
-        return cls(facts, arrays)
-
     def resume(self, feed: LiveFeed, path: PathLike) -> None:
         """Make a feed that has not begun go on from this state.
 
@@ -162,13 +77,7 @@ class LiveState:
         DataError
             If the state is that of another tracker or of other options, or is damaged.
         """
-        for name, value in feed.options.items():
-            before = self.facts["options"].get(name)
-            if before != value:
-                raise DataError(
-                    f"{path}: was made with {name} {before}, and not {value}; give the same "
-                    "options, or remove it to begin anew"
-                )
+        self.check_options(feed.options, path)
         feed.start(self.facts["head"])
         assert feed.tracks is not None
         if feed.digest != self.facts["digest"]:

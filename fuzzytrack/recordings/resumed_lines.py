@@ -7,7 +7,7 @@ from zlib import crc32
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.recordings.live_feed import FEED
-from fuzzytrack.recordings.live_state import LiveState
+from fuzzytrack.recordings.run_state import RunState
 
 __all__ = ["ResumedLines"]
 
@@ -17,10 +17,10 @@ class ResumedLines:
 
     Parameters
     ----------
-    state : LiveState
+    state : RunState
     """
 
-    def __init__(self, state: LiveState) -> None:
+    def __init__(self, state: RunState) -> None:
         self._state, self._passed, self._checksum = state, 0, 0
 
     def new(self, lines: Sequence[bytes]) -> list[bytes]:

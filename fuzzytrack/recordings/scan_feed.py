@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import Any, Protocol
+from zlib import crc32
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.datagrams import AsterixDatagrams
@@ -19,13 +21,14 @@ from fuzzytrack.recordings.scan_rows import ScanRows, rows_of
 from fuzzytrack.recordings.scan_run import ScannedScan, Scanner, ScanTotals
 from fuzzytrack.recordings.scan_stream import ScanStream
 from fuzzytrack.recordings.scan_table import ScanTable
+from fuzzytrack.trackers.origin import digest_of
 
 __all__ = ["FEED", "ScanFeed"]
 
 #: Name of a feed, for messages.
 FEED = "the feed"
 # Items by which the scans must be recognized, and how often that is tried.
-_HELD, _TRIED = 4_000, 200
+_MOST_HELD, _TRIED = 4_000, 200
 # Part of the period of the scans after which a scan is whole if nothing comes.
 _PAUSE = 0.05
 # So many faulty rows are left out while the first items are looked at; more are no accident.
@@ -68,6 +71,16 @@ class ScanFeed:
 
     Attributes
     ----------
+    items : int
+        Items that were taken so far.
+    checksum : int
+        CRC-32 of their bytes.
+    beginning : (int, int)
+        How many items say how the others are read, and their CRC-32.
+    head : list
+        These items, lines as text; blank ones in place of faulty ones.
+    scanner : ScanTracker
+        The scan tracker.
     stream : ScanStream or None
         The scan tracker; None until it is known how plots become scans.
     totals : ScanTotals
@@ -95,16 +108,40 @@ class ScanFeed:
     ) -> None:
         self._how = dict(how or {})
         _check(reading, self._how)
-        self.reading, self._scanner, self._columns = reading, scanner, output_columns
+        self.reading, self.scanner, self._columns = reading, scanner, output_columns
         self._datagrams, self._tentative = datagrams, tentative
         self._json, self._quotes, self._begin = json, quote_formulas, begin
         self.faults = LiveFaults(tell)
-        self.items = 0
+        self.items = self.checksum = 0
+        self.beginning = (0, 0)
+        self.head: list[Any] = []
         self.totals = ScanTotals()
         self.stream: ScanStream | None = None
-        self._head: list[Any] = []
+        self._held: list[Any] = []
         self._tables: _Tables | None = None
         self._table: ScanTable | None = None
+
+    @property
+    def begun(self) -> bool:
+        """Whether it is known how plots become scans."""
+        return self.stream is not None
+
+    @cached_property
+    def digest(self) -> str:
+        """Digest of the numbers of the scan tracker."""
+        return digest_of(self.scanner)
+
+    @property
+    def options(self) -> dict[str, str]:
+        """What decides on answers, beside the configuration and the feed; for a state."""
+        return {
+            "reading": repr(self.reading),
+            **{name: repr(value) for name, value in self._how.items()},
+            "output_columns": repr(self._columns),
+            "tentative": repr(self._tentative),
+            "json": repr(self._json),
+            "quote_formulas": repr(self._quotes),
+        }
 
     @property
     def header(self) -> bytes:
@@ -143,6 +180,7 @@ class ScanFeed:
         """
         first = self.items + 1
         self.items += len(items)
+        self.checksum = crc32(b"".join(items), self.checksum)
         texts = list(items) if self._datagrams else self._texts(items, first)
         if self.stream is None:
             return self._look(texts)
@@ -162,7 +200,7 @@ class ScanFeed:
         """
         answers = b""
         if self.stream is None:
-            if not self._head:
+            if not self._held:
                 raise no_rows(FEED)
             answers = self._started(last=True)
         assert self.stream is not None
@@ -179,19 +217,19 @@ class ScanFeed:
 
     def _look(self, items: Sequence[Any]) -> bytes:
         """Hold items until they say how plots are read, and which are of one scan."""
-        before = len(self._head)
-        self._head += items
+        before = len(self._held)
+        self._held += items
         recognized = self._how.get("scan") is None and (
             self._how.get("period") is None or self._how.get("sectors") is not None
         )
         # To recognize scans takes many plots; to try it at each would take long.
-        if recognized and len(self._head) // _TRIED == before // _TRIED:
+        if recognized and len(self._held) // _TRIED == before // _TRIED:
             return b""
-        return self._started(last=len(self._head) >= _HELD)
+        return self._started(last=len(self._held) >= _MOST_HELD)
 
     def _started(self, *, last: bool) -> bytes:
         """Begin with the items so far, if that is possible; it must be with the last of them."""
-        head = list(self._head)
+        head = list(self._held)
         faults: list[DataError] = []
         while True:
             try:
@@ -211,18 +249,36 @@ class ScanFeed:
             if last:
                 raise (faults or [no_rows(FEED)])[0]
             return b""
-        tables, plots = found
-        self._head = head
         for fault in faults:
             self.faults.add("faulty", f"{fault}; left out")
-        self._tables = tables
+        self.beginning = self.items, self.checksum
+        self._begin_with(head, *found)
+        skip, self._held = 0 if self._datagrams else found[0].begins, []
+        return self._answers(self._rows(head[skip:], skip + 1))
+
+    def start(self, head: Sequence[Any]) -> None:
+        """Begin with first items, which are those of `head` before.
+
+        Parameters
+        ----------
+        head : sequence
+
+        Raises
+        ------
+        DataError
+            As `push`.
+        """
+        found = self._recognized(head)
+        if found is None:
+            raise no_rows(FEED)
+        self._begin_with(head, *found)
+
+    def _begin_with(self, head: Sequence[Any], tables: Any, plots: ScanPlots) -> None:
+        self.head, self._tables = list(head), tables
         self._table = ScanTable.of(plots.files.decoder, "", self._columns)
-        self.stream = ScanStream(plots, self._scanner, tentative=self._tentative)
+        self.stream = ScanStream(plots, self.scanner, tentative=self._tentative)
         if self._begin is not None:
             self._begin(plots)
-        skip = 0 if self._datagrams else tables.begins
-        held, self._head = self._head[skip:], []
-        return self._answers(self._rows(held, skip + 1))
 
     def _recognized(self, head: Sequence[Any]) -> tuple[Any, ScanPlots] | None:
         """What reads the items and how they become scans; None if there is no row yet."""

@@ -55,6 +55,12 @@ class ScanFindings(Findings):
 
     _FAULTS = ("missed", "copies", "fills", "late", "wraps", "own_missing", "own_jumps")
 
+    @property
+    def counts(self) -> dict[str, int]:
+        """The counts by their names."""
+        names = ("scans", "empty", "plots", *self._FAULTS, "own_known")
+        return {name: getattr(self, name) for name in names}
+
     def count(self, plots: int) -> None:
         """Count a scan with some plots."""
         self.scans += 1

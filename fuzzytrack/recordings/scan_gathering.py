@@ -78,7 +78,7 @@ class ScanGathering:
         scans: ScanList | None = None,
         group: str = "",
     ) -> None:
-        self._rules, self._findings, self._list, self._group = rules, findings, scans, group
+        self.rules, self._findings, self._list, self._group = rules, findings, scans, group
         self._cutter = Cutter(rules.cut)
         self._open: list[ScanRows] = []
         self._time = math.nan
@@ -130,9 +130,9 @@ class ScanGathering:
             yield from self._listed_until(place)
             time = max(time, float(self._list.times[self._group][place]))
             self._next = place + 1
-        again = self._rules.cut.rule == "column" and str(rows.scans[0]) in self._recent
-        if time <= self._time or (again and self._rules.drop_late):
-            if not self._rules.drop_late:
+        again = self.rules.cut.rule == "column" and str(rows.scans[0]) in self._recent
+        if time <= self._time or (again and self.rules.drop_late):
+            if not self.rules.drop_late:
                 raise self._out_of_order(rows, time)
             self._findings.late += len(rows)
             return
@@ -148,7 +148,7 @@ class ScanGathering:
         kept = rows if good.all() else rows.take(good)
         kept = self._without_copies(kept)
         positions = kept.positions
-        if self._rules.moved:
+        if self.rules.moved:
             positions = positions + own
         self._time = time
         self._findings.count(len(kept))
@@ -206,8 +206,8 @@ class ScanGathering:
         missing = self._skipped_numbers(rows)
         if missing > 0:
             step = wait / (missing + 1)
-        elif self._rules.cut.rule != "column" and self._rules.cut.period > 0:
-            step = self._rules.cut.period
+        elif self.rules.cut.rule != "column" and self.rules.cut.period > 0:
+            step = self.rules.cut.period
             missing = round(min(wait / step, 1e9)) - 1
         for k in range(1, min(missing, _MOST_EMPTY) + 1):
             at = before + k * step
@@ -216,7 +216,7 @@ class ScanGathering:
 
     def _skipped_numbers(self, rows: ScanRows) -> int:
         """How many numbers of scans there are between the last one and this one."""
-        if not self._recent or self._rules.cut.rule != "column":
+        if not self._recent or self.rules.cut.rule != "column":
             return 0
         before, now = self._recent[-1], str(rows.scans[0])
         if not (before.isdecimal() and now.isdecimal()):
@@ -242,23 +242,23 @@ class ScanGathering:
         return place
 
     def _remember(self, rows: ScanRows) -> None:
-        if self._rules.cut.rule != "column":
+        if self.rules.cut.rule != "column":
             return
         word = str(rows.scans[0])
         if word in self._recent:
             raise DataError(
-                f"{rows.file}: row {rows.rows[0]}, column {self._rules.scan_column}: scan {word!r} "
+                f"{rows.file}: row {rows.rows[0]}, column {self.rules.scan_column}: scan {word!r} "
                 f"comes again after {self._recent[-1]!r}; expected the rows of a scan one after "
                 "the other (`sort` puts them in order of time)"
             )
         self._recent = [*self._recent[1 - _REMEMBERED :], word]
 
     def _out_of_order(self, rows: ScanRows, time: float) -> DataError:
-        clock, named = self._rules.decoder.clock, ""
-        if self._rules.cut.rule == "column":
-            named = f" {str(rows.scans[0])!r} of column {self._rules.scan_column}"
+        clock, named = self.rules.decoder.clock, ""
+        if self.rules.cut.rule == "column":
+            named = f" {str(rows.scans[0])!r} of column {self.rules.scan_column}"
         return DataError(
-            f"{rows.file}: row {rows.rows[0]}, column {self._rules.decoder.columns.time}: the scan"
+            f"{rows.file}: row {rows.rows[0]}, column {self.rules.decoder.columns.time}: the scan"
             f"{named} ends at {clock.as_cell(time)}, not later than {clock.as_cell(self._time)} of "
             "the one before; `sort` puts plots in order of time, `lateness` leaves out late ones"
         )

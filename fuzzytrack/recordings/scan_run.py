@@ -241,6 +241,11 @@ class SectorRun:
         self._held: list[ScanRows] = []
         self._pass: SectorPass | None = None
 
+    @property
+    def session(self) -> Any:
+        """The session of the scan tracker; None before the first turns are known."""
+        return None if self._pass is None else self._pass.session
+
     def advance(self, rows: ScanRows) -> Iterator[tuple[Scan, TrackReports]]:
         """Take in rows in order of time; see `SectorPass.advance`."""
         if self._pass is not None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+from fuzzytrack.recordings.scan_gathering import GatheringRules
 from fuzzytrack.recordings.scan_order import RowOrder
 from fuzzytrack.recordings.scan_plots import ScanPlots
 from fuzzytrack.recordings.scan_rows import ScanRows
@@ -51,6 +52,16 @@ class ScanStream:
                 tentative=tentative,
                 radar=plots.radar_place(),
             )
+
+    @property
+    def session(self) -> Any:
+        """The session of the scan tracker; None where the antenna is not known yet."""
+        return self._session if self._sectors is None else self._sectors.session
+
+    @property
+    def rules(self) -> GatheringRules:
+        """What is done with rows."""
+        return self._gathering.rules
 
     def advance(self, rows: ScanRows) -> Iterator[Answer]:
         """Take in rows, in the order in which they came.

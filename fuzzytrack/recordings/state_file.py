@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from threading import Thread
 
 from fuzzytrack.io.files import check_output
-from fuzzytrack.recordings.live_feed import LiveFeed
-from fuzzytrack.recordings.live_state import LiveState
+from fuzzytrack.recordings.run_state import RunState
 
 __all__ = ["StateFile"]
 
@@ -47,19 +47,17 @@ class StateFile:
             return None
         return max(0.0, self._next - time.monotonic())
 
-    def save(self, feed: LiveFeed, written: int) -> None:
+    def save(self, made: Callable[[], RunState]) -> None:
         """Begin to save it; OSError if it could not be saved the last time.
 
         Parameters
         ----------
-        feed : LiveFeed
-            It has begun.
-        written : int
-            Bytes of its answers so far.
+        made : callable
+            Makes the state, which is written while the run goes on.
         """
         failure = self._joined()
         begin = time.monotonic()
-        state = LiveState.of(feed, written)
+        state = made()
         end = time.monotonic()
         self.has_changed, self._next = False, end + max(_EVERY, (end - begin) / _SHARE)
         self._thread = Thread(target=self._write, args=(state,))
@@ -81,7 +79,7 @@ class StateFile:
         failure, self._failure = self._failure, None
         return failure
 
-    def _write(self, state: LiveState) -> None:
+    def _write(self, state: RunState) -> None:
         try:
             state.save(self.path)
         except OSError as error:

@@ -83,6 +83,11 @@ class ScanSession:
         return int(np.count_nonzero(self._status))
 
     @property
+    def companion(self) -> Any:
+        """What keeps states beside the array of tracks, see `Update`; None if nothing does."""
+        return self._companion
+
+    @property
     def _status(self) -> Any:
         return self._work.tracks[: self._work.counts[ROWS], STATUS]
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import copy
 import math
 import operator
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -91,9 +91,21 @@ class TrackStore:
         """Number of tracks."""
         return self._used - len(self._free)
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            "tracker": self.tracker, "n_axes": self.n_axes, "numbers": self._numbers,
+            "time": self._time, "used": self._used, "free": self._free,
+        }  # fmt: skip
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(state["tracker"], state["n_axes"])  # type: ignore[misc]
+        self._numbers, self._time = state["numbers"], state["time"]
+        self._used, self._free = state["used"], state["free"]
+
     def copy(self) -> TrackStore:
         """Another store with the same tracks in the same slots."""
-        made = copy.copy(self)
+        made = object.__new__(TrackStore)
+        made.__dict__.update(self.__dict__)
         made._numbers, made._time, made._free = (
             self._numbers.copy(), self._time.copy(), self._free.copy(),
         )  # fmt: skip

@@ -1,14 +1,21 @@
 """The command `scan --follow`: plots that come through a pipe or a port."""
 
+import os
+import signal
 import socket
 import struct
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
+from fuzzytrack.recordings.scan_state import ScanState
+
+# Seconds after which a process hangs.
+PATIENCE = 60
 COMMAND = (sys.executable, "-m", "fuzzytrack", "scan")
 
 
@@ -50,6 +57,69 @@ def test_a_pipe_gives_what_a_file_gives(run, csv, tmp_path):
 )
 def test_what_a_feed_cannot_do(fails, words, said):
     assert said in fails("scan", *words, "--follow")
+
+
+@contextmanager
+def following(*options):
+    """A process that follows; killed at the end if it has not ended."""
+    process = subprocess.Popen(
+        [*COMMAND, "-", "--follow", *options],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate(timeout=PATIENCE)
+
+
+def _wait_for_file(path):
+    begin = time.monotonic()
+    while not os.path.exists(path) and time.monotonic() < begin + PATIENCE:
+        time.sleep(0.05)
+
+
+def _follow(text, *options):
+    return subprocess.run(
+        [*COMMAND, "-", "--follow", *options], input=text, capture_output=True, text=True,
+        check=False, timeout=120,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("way", ["again", "onward"])
+def test_a_run_that_was_killed_within_a_scan_goes_on_from_its_state(way, csv, tmp_path):
+    lines = harbor().splitlines(keepends=True)
+    whole, parts, state = (str(tmp_path / name) for name in ("whole.csv", "parts.csv", "state"))
+    assert _follow(harbor(), "-o", whole).returncode == 0
+    given = ["--scan", "scan", "-o", parts, "--state", state]
+    with following(*given) as process:
+        process.stdin.write("".join(lines[:26]).encode())
+        process.stdin.flush()
+        _wait_for_file(state)
+        process.send_signal(signal.SIGKILL)
+        process.wait(PATIENCE)
+    # What it has written after its last save is cut off.
+    with open(parts, "a") as file:
+        file.write("half a li")
+    rest = harbor() if way == "again" else "".join(lines[26:])
+    done = _follow(rest, *given, "--feed", way)
+    assert done.returncode == 0, done.stderr
+    assert "goes on after line 26 of the feed" in done.stderr
+    with open(whole) as one, open(parts) as other:
+        assert one.read() == other.read()
+
+
+def test_ctrl_c_within_a_scan_saves_it_and_ends_with_status_130(tmp_path):
+    state = tmp_path / "state"
+    with following("--scan", "scan", "--state", str(state)) as process:
+        process.stdin.write("".join(harbor().splitlines(keepends=True)[:4]).encode())
+        process.stdin.flush()
+        _wait_for_file(state)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE) == 130
+        said = process.stderr.read().decode()
+    assert "Traceback" not in said
+    assert ScanState.load(state).lines == 4
 
 
 def block(plots):

@@ -289,11 +289,11 @@ def test_a_state_that_cannot_be_saved_is_told_of_once(tmp_path):
     feed = a_feed()
     pushed(feed, "t,x\n0,1\n")
     folder.rmdir()
-    file.save(feed, 0)
+    file.save(lambda: LiveState.of(feed, 0))
     with pytest.raises(OSError, match="there is no folder"):
         file.wait()
     folder.mkdir()
-    file.save(feed, 0)
+    file.save(lambda: LiveState.of(feed, 0))
     file.wait()
     assert zipfile.is_zipfile(folder / "state")
 

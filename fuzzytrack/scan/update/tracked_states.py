@@ -9,6 +9,7 @@ import numpy as np
 from fuzzytrack.scan.clock import LATEST, PLOTS, ROWS
 from fuzzytrack.scan.plot_columns import PLOT_TIME, PLOT_X, PLOT_Y, R11, R22, RECORDED
 from fuzzytrack.scan.track_columns import PLOT, STATUS, TIME, X, Y
+from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.track_store import TrackStore
 
 __all__ = ["MEMORY", "NEXT", "PREDICTED", "SLOT", "TrackedStates"]
@@ -32,6 +33,11 @@ class TrackedStates:
     def __init__(self, tracker: str, at: int) -> None:
         self._at = at
         self._store = TrackStore(tracker, 2)
+
+    @property
+    def tracker(self) -> Tracker:
+        """Tracker of the states."""
+        return self._store.tracker
 
     def copy(self) -> TrackedStates:
         """As it is now."""
