@@ -22,7 +22,7 @@ from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.yamltree import Mapping, Node, Scalar, quoted
 from fuzzytrack.yamltree import Sequence as ListNode
 
-__all__ = ["add_set", "remove_set", "rename_set", "set_shape"]
+__all__ = ["add_set", "remove_set", "rename_set", "set_shape", "set_shapes"]
 
 # Rules that a message names; of more, it says how many.
 _NAMED = 6
@@ -81,16 +81,55 @@ def set_shape(
         text = write_out(text, variable, set_name, file)
     edits = TextEdits(text, file)
     owner = _variable(edits.before, variable)
-    old = owner.sets[owner.index(set_name)]
-    new = FuzzySet(set_name, shape or old.shape, tuple(parameters))
-    node = edits.sets(variable).entries[set_name][1]
-    assert isinstance(node, Mapping)  # the text has been read as a rule base
-    ((key, numbers),) = node.entries.values()
-    assert isinstance(numbers, ListNode)
-    if new.shape != old.shape:
-        edits.replace(edits.content(key), key.end, new.shape)
-    _set_numbers(edits, numbers, new.parameters)
-    return _result_of_shape(edits, node, variable, old, new)
+    kind = shape or owner.sets[owner.index(set_name)].shape
+    return _with_shapes(edits, owner, [FuzzySet(set_name, kind, tuple(parameters))])
+
+
+def set_shapes(
+    text: str,
+    variable: str,
+    sets: Iterable[FuzzySet],
+    *,
+    apart: bool = False,
+    file: str = "<text>",
+) -> EditedText:
+    """Change the shapes of several sets of a variable at once, as of neighbors that share a corner.
+
+    Parameters
+    ----------
+    text : str
+        A rule base in YAML.
+    variable : str
+        Name of an input or output.
+    sets : iterable of FuzzySet
+        New shapes, with the names of sets that are there, each once. Only all of them together
+        need to be a rule base.
+    apart : bool
+        Whether sets that are shared by an anchor are written out first.
+    file : str
+        Name for messages.
+
+    Returns
+    -------
+    EditedText
+        As for `set_shape`.
+
+    Raises
+    ------
+    RuleBaseError
+        As for `set_shape`; also if a set is named twice, or two of them share their text.
+    """
+    new = tuple(sets)
+    if apart:
+        for each in new:
+            text = write_out(text, variable, each.name, file)
+    edits = TextEdits(text, file)
+    owner = _variable(edits.before, variable)
+    names = [each.name for each in new]
+    if len(set(names)) < len(names):
+        doubled = next(name for name in names if names.count(name) > 1)
+        raise RuleBaseError(f"sets: {quoted(doubled)} is named twice; give each set once")
+    return _with_shapes(edits, owner, new)
 
 
 def add_set(
@@ -316,30 +355,47 @@ def _set_numbers(edits: TextEdits, node: ListNode, parameters: tuple[float, ...]
         edits.replace(kept, kept, more)
 
 
-def _result_of_shape(
-    edits: TextEdits, node: Node, variable: str, old: FuzzySet, new: FuzzySet
-) -> EditedText:
-    """The text, after a check that only this set and equal ones that share it have changed."""
+def _with_shapes(edits: TextEdits, owner: Variable, new: Sequence[FuzzySet]) -> EditedText:
+    """The text with new shapes, after a check that only these and their equals have changed."""
+    moved = []
+    nodes = edits.sets(owner.name).entries
+    for each in new:
+        old = owner.sets[owner.index(each.name)]
+        node = nodes[each.name][1]
+        assert isinstance(node, Mapping)  # the text has been read as a rule base
+        ((key, numbers),) = node.entries.values()
+        assert isinstance(numbers, ListNode)
+        if each.shape != old.shape:
+            edits.replace(edits.content(key), key.end, each.shape)
+        _set_numbers(edits, numbers, each.parameters)
+        moved.append((old, each))
     text, after = edits.loaded()
-    shape = (new.shape, new.parameters)
-    changed = set()
+    wanted = {(owner.name, each.name): each for each in new}
+    shapes = dict(wanted)
     for was, now in zip(_variables(edits.before), _variables(after), strict=True):
         for a, b in zip(was.sets, now.sets, strict=True):
-            alike = (a.shape, a.parameters) == (old.shape, old.parameters)
-            if a != b and alike and (b.shape, b.parameters) == shape:
-                changed.add((was.name, a.name))
-    expected = edits.before
-    for name, set_name in changed | {(variable, new.name)}:
+            # Sets that share the text of one of them were equal to it, and are so again.
+            shared = any(_alike(a, old) and _alike(b, each) for old, each in moved)
+            if a != b and shared:
+                shapes.setdefault((was.name, a.name), b)
 
-        def reshaped(found: tuple[FuzzySet, ...], set_name: str = set_name) -> tuple[FuzzySet, ...]:
-            return tuple(FuzzySet(s.name, *shape) if s.name == set_name else s for s in found)
+    def changed(variables: tuple[Variable, ...]) -> tuple[Variable, ...]:
+        return tuple(
+            replace(v, sets=tuple(shapes.get((v.name, s.name), s) for s in v.sets))
+            for v in variables
+        )
 
-        expected = _with_sets(expected, [name], reshaped, expected.rules)
+    before = edits.before
+    expected = replace(before, inputs=changed(before.inputs), outputs=changed(before.outputs))
     if after != expected:
-        edits.result(expected, node, f"the shape of {quoted(new.name)}")
+        named = ", ".join(quoted(each.name) for each in new)
+        edits.result(expected, nodes[new[0].name][1], f"the shape of {named}")
     order = [(v.name, s.name) for v in _variables(after) for s in v.sets]
-    also = [place for place in order if place in changed and place != (variable, new.name)]
-    return EditedText(text, after, also)
+    return EditedText(text, after, [p for p in order if p in shapes and p not in wanted])
+
+
+def _alike(a: FuzzySet, b: FuzzySet) -> bool:
+    return (a.shape, a.parameters) == (b.shape, b.parameters)
 
 
 # -------------------------------------------------------------------- columns and rows

@@ -23,7 +23,7 @@ from fuzzytrack.fuzzy.rule_edits import (
     set_operator,
 )
 from fuzzytrack.fuzzy.rulebase import Consequent, RuleBase
-from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set, set_shape
+from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set, set_shapes
 from fuzzytrack.fuzzy.text_edits import EditedText
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.studio.symmetry import (
@@ -38,6 +38,8 @@ from fuzzytrack.yamlvalues import Value, insert_value, remove_value, set_value
 __all__ = ["COMMANDS", "OF_ANY_TEXT", "edited", "is_number", "parameters_of"]
 
 MAX_SAYS = 4096
+_THEN = 'conclusions, such as [{"output": "u", "set": "S"}]'
+_SHAPES = 'sets, such as [{"set": "ze", "parameters": [-0.1, 0, 0.1], "shape": "trimf"}]'
 _LARGEST = 1e300
 
 
@@ -91,18 +93,34 @@ def shape(
     apart: bool = False,
 ) -> EditedText:
     """Set the parameters of a set, and its shape; `symmetric` also of its mirror."""
-    if not symmetric:
-        return set_shape(text, variable, set, parameters, shape, apart=apart)
+    new = {"set": set, "parameters": parameters, "shape": shape}
+    return shapes(text, variable, [new], symmetric, apart)
+
+
+def shapes(
+    text: str,
+    variable: str,
+    shapes: list[dict[str, Any]],
+    symmetric: bool = False,
+    apart: bool = False,
+) -> EditedText:
+    """Set several sets at once: set, parameters and, if it changes, shape of each."""
     owner = _variable(loads_rulebase(text), variable)
-    kind = shape or owner.sets[owner.index(set)].shape
-    new = FuzzySet(set, kind, tuple(parameters))
-    if mirrored_name(owner, set) == set:
-        new = symmetric_shape(owner, new)
-        return set_shape(text, variable, set, new.parameters, kind, apart=apart)
-    other = mirrored_shape(owner, new)
-    first = set_shape(text, variable, set, new.parameters, kind, apart=apart)
-    second = set_shape(first, variable, other.name, other.parameters, other.shape, apart=apart)
-    return EditedText(second, second.rules, (*first.also, (variable, other.name), *second.also))
+    found: dict[str, FuzzySet] = {}
+    mirrors: dict[str, FuzzySet] = {}
+    for each in shapes:
+        new = _shape(owner, each)
+        if new.name in found:
+            raise ValueError(f"shapes: {quoted(new.name)} is named twice; give each set once")
+        if symmetric and mirrored_name(owner, new.name) == new.name:
+            new = symmetric_shape(owner, new)
+        elif symmetric:
+            other = mirrored_shape(owner, new)
+            mirrors[other.name] = other
+        found[new.name] = new
+    changed = set_shapes(text, variable, (mirrors | found).values(), apart=apart)
+    more = [(variable, name) for name in mirrors if name not in found]
+    return EditedText(changed, changed.rules, (*more, *changed.also))
 
 
 def add(
@@ -172,6 +190,7 @@ COMMANDS: dict[str, Callable[..., str]] = {
     "conclude": conclude,
     "confidence": confidence,
     "shape": shape,
+    "shapes": shapes,
     "add-set": add,
     "remove-set": remove,
     "rename-set": rename,
@@ -278,7 +297,7 @@ _SAID = {
     "float": "a number",
     "list[float]": "a list of numbers",
     "dict[str, str]": 'sets by input, such as {"E": "ze"}',
-    "list[dict[str, Any]]": 'conclusions, such as [{"output": "u", "set": "S"}]',
+    "list[dict[str, Any]]": "a list of mappings",
 }
 
 
@@ -289,11 +308,21 @@ def _consequents(then: list[dict[str, Any]]) -> list[Consequent]:
         sure = each.get("confidence", 1.0)
         named = {"output", "set"} <= each.keys() <= {"output", "set", "confidence"}
         if not (named and _IS["str"](each["output"]) and _IS["str"](each["set"])):
-            raise ValueError(f"then: must be {_SAID['list[dict[str, Any]]']}, got {each!r:.60}")
+            raise ValueError(f"then: must be {_THEN}, got {each!r:.60}")
         if not is_number(sure):
             raise ValueError(f"then: confidence must be a number, got {sure!r:.60}")
         found.append(Consequent(each["output"], each["set"], sure))
     return found
+
+
+def _shape(owner: Variable, each: Mapping[str, Any]) -> FuzzySet:
+    """A set as a message gives it, with the shape that it has unless one is given."""
+    kinds = {"set": "str", "parameters": "list[float]", "shape": "str | None"}
+    named = {"set", "parameters"} <= each.keys() <= kinds.keys()
+    if not named or not all(_IS[kinds[key]](value) for key, value in each.items()):
+        raise ValueError(f"shapes: must be {_SHAPES}, got {each!r:.60}")
+    old = owner.sets[owner.index(each["set"])]
+    return FuzzySet(old.name, each.get("shape") or old.shape, tuple(each["parameters"]))
 
 
 def _mirrored(changed: EditedText, where: Mapping[str, str]) -> EditedText:

@@ -50,12 +50,33 @@ def test_cells():
 def test_symmetric_sets():
     arguments = {"variable": "E", "set": "ps", "parameters": [0, 0.2, 0.3], "symmetric": True}
     text = edited(TEXT, "shape", arguments)
-    assert text.also == (("dE", "ps"), ("E", "ns"), ("dE", "ns"))
+    assert text.also == (("E", "ns"), ("dE", "ns"), ("dE", "ps"))
     found = {s.name: s.parameters for s in loads_rulebase(text).input("dE").sets}
     assert found["ps"] == (0, 0.2, 0.3)
     assert found["ns"] == (-0.3, -0.2, 0)
     arguments = {"variable": "E", "set": "ze", "parameters": [-0.1, 0, 0.2], "symmetric": True}
     assert "ze: {trimf: [-0.2, 0, 0.2]}" in edited(TEXT, "shape", {**arguments, "apart": True})
+
+
+def test_neighbors_that_share_a_corner_move_together():
+    moved = [
+        {"set": "ze", "parameters": [-0.1, 0, 0.35]},
+        {"set": "ps", "parameters": [0, 0.35, 0.5]},
+        {"set": "pm", "parameters": [0.35, 0.5, 0.6]},
+    ]
+    text = edited(TEXT, "shapes", {"variable": "E", "shapes": moved})
+    assert text.also == (("dE", "ze"), ("dE", "ps"), ("dE", "pm"))
+    # One by one they would not be in the order of their peaks.
+    with pytest.raises(RuleBaseError, match="ascending peak"):
+        edited(TEXT, "shape", {"variable": "E", "set": "ps", "parameters": [0, 0.35, 0.5]})
+    both = edited(TEXT, "shapes", {"variable": "E", "shapes": moved, "symmetric": True})
+    found = {s.name: s.parameters for s in loads_rulebase(both).input("E").sets}
+    assert found["nm"] == (-0.6, -0.5, -0.35)
+    assert found["ze"] == (-0.35, 0, 0.35)
+    with pytest.raises(ValueError, match="'ze' is named twice"):
+        edited(TEXT, "shapes", {"variable": "E", "shapes": [moved[0], moved[0]]})
+    with pytest.raises(ValueError, match="shapes: must be sets, such as"):
+        edited(TEXT, "shapes", {"variable": "E", "shapes": [{"set": "ze"}]})
 
 
 def test_sets_operators_and_lists():
@@ -117,6 +138,7 @@ def test_any_message_is_carried_out_or_refused(data):
     names = parameters_of(command) if command in COMMANDS else {"x": ("str", True)}
     words = st.sampled_from(["E", "dE", "stiffness", "ze", "Z", "trimf", "and", "S-L"])
     near = {"str": words, "dict[str, str]": st.dictionaries(words, words, max_size=2)}
+    near["list[dict[str, Any]]"] = st.just([{"set": "ze", "parameters": [0, 0, 0]}])
     near["list[float]"] = st.lists(st.floats(-1, 1), max_size=4)
     arguments = {
         name: data.draw(JSON | near.get(kind, st.booleans())) for name, (kind, _) in names.items()
