@@ -2,11 +2,13 @@ import contextlib
 import json
 import struct
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 TOKEN = "a-token-of-the-tests"
+CHROMIUM = Path("/usr/bin/chromium")
 
 
 class Client:
@@ -144,3 +146,22 @@ def new_server():
 def page(server):
     with server.page() as client:
         yield client
+
+
+@pytest.fixture(scope="module")
+def browser_page(server):
+    """A page of the studio in a browser; mistakes in its scripts fail the test."""
+    api = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
+    if not CHROMIUM.exists():
+        pytest.skip(f"needs Debian's Chromium, {CHROMIUM}")
+    mistakes = []
+    with api.sync_playwright() as player:
+        browser = player.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"]
+        )
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.on("pageerror", lambda mistake: mistakes.append(mistake))
+        page.goto(f"http://{server.host}/#token={TOKEN}")
+        yield page
+        browser.close()
+    assert not mistakes

@@ -1,0 +1,166 @@
+"""The design side of the page in a real browser, by mouse and keys."""
+
+import re
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
+expect = playwright.expect
+
+
+@pytest.fixture
+def design(browser_page):
+    """The page of a new session, its first surface drawn."""
+    page = browser_page
+    page.evaluate("sessionStorage.clear()")
+    page.reload()
+    expect(page.locator("#status")).to_contain_text("connected")
+    expect(surface(page)).to_have_attribute("aria-label", re.compile("^stiffness over E and dE"))
+    return page
+
+
+def cell(page, column, row):
+    return page.get_by_role("gridcell", name=f"E {column}, dE {row}:")
+
+
+def surface(page):
+    return page.locator("#pane-surface canvas")
+
+
+def pixels(page):
+    """The picture of the surface, which changes with whatever is drawn in it."""
+    return page.evaluate("document.querySelector('#pane-surface canvas').toDataURL()")
+
+
+def corner(page, name):
+    return page.get_by_role("slider", name=name)
+
+
+def test_cell_is_typed_and_undone(design):
+    cell(design, "ze", "nm").click()
+    design.keyboard.press("Enter")
+    design.keyboard.type("M-Z")
+    design.keyboard.press("Enter")
+    expect(cell(design, "ze", "nm")).to_have_text("M-Z")
+    expect(cell(design, "ze", "nm")).to_be_focused()
+    expect(design.locator("#bar")).to_contain_text("not saved")
+    design.keyboard.press("Control+z")
+    expect(cell(design, "ze", "nm")).to_have_text("L-L")
+    design.keyboard.press("Control+Shift+z")
+    expect(cell(design, "ze", "nm")).to_have_text("M-Z")
+
+
+def test_words_and_keys_change_a_cell_and_its_mirror(design):
+    cell(design, "nl", "nl").click()
+    design.get_by_label("symmetric").check()
+    design.get_by_role("group", name="damping").get_by_role("button", name="Z").click()
+    expect(cell(design, "nl", "nl")).to_have_text("S-Z")
+    expect(cell(design, "pl", "pl")).to_have_text("S-Z")
+    cell(design, "nl", "nl").focus()
+    design.keyboard.press("+")
+    expect(cell(design, "nl", "nl")).to_have_text("M-Z")
+    design.keyboard.press("ArrowRight")
+    expect(cell(design, "nm", "nl")).to_be_focused()
+
+
+def test_refused_cell_says_what_is_allowed_and_esc_leaves_it(design):
+    cell(design, "ze", "nm").dblclick()
+    design.keyboard.type("M-Q")
+    design.keyboard.press("Enter")
+    refusal = design.get_by_role("alert")
+    expect(refusal).to_contain_text("'Q'")
+    expect(refusal).to_contain_text("Z, S, M, L")
+    design.keyboard.press("Escape")
+    expect(cell(design, "ze", "nm")).to_have_text("L-L")
+
+
+def test_dragged_corner_is_one_step_of_undo(design):
+    box = corner(design, "ze, right foot").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    before = pixels(design)
+    design.mouse.move(x, y)
+    design.mouse.down()
+    design.mouse.move(x + 30, y, steps=5)
+    design.mouse.move(x + 60, y, steps=5)
+    expect(design.get_by_label("ze, c", exact=True)).not_to_have_value("0.1")
+    design.mouse.up()
+    expect(design.get_by_role("button", name="Undo")).to_be_enabled()
+    assert pixels(design) != before
+    design.keyboard.press("Control+z")
+    expect(design.get_by_label("ze, c", exact=True)).to_have_value("0.1")
+    expect(design.locator("#bar")).to_contain_text("as shipped")
+
+
+def test_corner_moves_by_keys_and_esc_takes_it_back(design):
+    corner(design, "ze, right foot").focus()
+    design.keyboard.down("ArrowRight")
+    expect(design.get_by_label("ze, c", exact=True)).to_have_value("0.15")
+    design.keyboard.press("Escape")
+    expect(design.get_by_label("ze, c", exact=True)).to_have_value("0.1")
+
+
+def test_number_and_shape_of_a_set(design):
+    design.get_by_label("nl, d", exact=True).fill("-0.25")
+    design.keyboard.press("Enter")
+    expect(corner(design, "nl, right foot")).to_have_attribute("aria-valuenow", "-0.25")
+    design.get_by_label("Shape of ze").select_option("gaussmf")
+    expect(design.get_by_label("ze, mean")).to_have_value("0")
+
+
+def test_surface_turns_and_a_click_explains(design):
+    before = pixels(design)
+    surface(design).focus()
+    design.keyboard.press("ArrowLeft")
+    design.wait_for_function(
+        "before => document.querySelector('#pane-surface canvas').toDataURL() != before", arg=before
+    )
+    surface(design).click()
+    expect(design.locator("#pane-explain .results")).to_contain_text("stiffness")
+    expect(design.locator("#pane-rules td.fired").first).to_be_visible()
+
+
+def test_surface_view_shows_contours_and_gains(design):
+    design.get_by_role("button", name="β", exact=True).click()
+    design.get_by_role("navigation").get_by_role("button", name="Surface").click()
+    contours = design.get_by_role("application", name="Contours of beta")
+    contours.focus()
+    design.keyboard.press("ArrowUp")
+    expect(design.locator("#pane-explain").get_by_label("dE")).to_have_value("0.05")
+    expect(design.get_by_role("img", name="Reachable: alpha from")).to_be_visible()
+    design.get_by_role("button", name="Certify").click()
+    expect(design.locator("#pane-gains .verdict")).to_contain_text("certified")
+
+
+def test_text_with_mistakes_marks_its_cells(design):
+    design.get_by_role("button", name="Text").click()
+    area = design.get_by_label("YAML of the rule base")
+    area.fill(area.input_value().replace("nm: [S-M,", "nm: [S-Q,"))
+    expect(design.locator("#text-complaints")).to_contain_text("'Q'")
+    design.get_by_role("button", name="Table").click()
+    expect(cell(design, "nl", "nm")).to_have_attribute("aria-invalid", "")
+    design.get_by_role("button", name="Undo").click()
+    expect(design.locator("#pane-rules .complaint")).to_have_count(0)
+
+
+def test_saved_and_there_after_a_reload(design, server):
+    cell(design, "ze", "nm").click()
+    design.keyboard.press("-")
+    expect(cell(design, "ze", "nm")).to_have_text("M-L")
+    design.keyboard.press("Control+s")
+    design.get_by_label("Name of the file").fill("mine.yaml")
+    design.keyboard.press("Enter")
+    expect(design.locator("#bar")).to_contain_text("mine.yaml")
+    assert "M-L" in (server.folder / "mine.yaml").read_text().split("nm:")[-1]
+    design.get_by_role("navigation").get_by_role("button", name="Surface").click()
+    design.reload()
+    expect(design.locator("#main")).to_have_attribute("data-view", "surface")
+    expect(design.locator("#bar")).to_contain_text("mine.yaml")
+
+
+def test_pictures_are_saved(design):
+    design.get_by_role("button", name="Save a picture of the surface").click()
+    with design.expect_download() as download:
+        design.get_by_role("menuitem", name="SVG").click()
+    text = download.value.path().read_text()
+    assert text.startswith("<svg")
+    assert text.count("<polygon") > 3000
