@@ -69,10 +69,13 @@ class SharedCode:
         return kind.codes[arguments]
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Code for a function of arrays; see `fuzzytrack.kernels.compile.compiled`."""
+        """Code for a function of arrays that makes none; see `fuzzytrack.kernels.compile.compiled`.
+
+        That of a single function is the one which `compiled` keeps on disk without `allocates`.
+        """
         kind = self._kind(function)
         if kind is None:
-            return compiled(function)
+            return compiled(function, allocates=False)
         if _ARRAYS not in kind.codes:
             kind.codes[_ARRAYS] = kind.of_arrays(function)
         return kind.codes[_ARRAYS]  # type: ignore[no-any-return]
@@ -129,8 +132,9 @@ class _Kind:
     def of_arrays(self, function: Any) -> Callable[..., Any]:
         """The same for a function of arrays, which is called from Python."""
         if not self.differ:
-            return compiled(function)
-        return dispatcher(_reading(function, self.memory, self.differ))
+            return compiled(function, allocates=False)
+        reading = _reading(function, self.memory, self.differ, allocates=False)
+        return dispatcher(reading, allocates=False)
 
 
 def _bits(numbers: Array) -> Any:
@@ -158,7 +162,9 @@ def _compiled(
     return c_function(_reading(function, memory, differ), arguments, np.float64, None)
 
 
-def _reading(function: FunctionType, memory: Array, differ: Collection[int]) -> FunctionType:
+def _reading(
+    function: FunctionType, memory: Array, differ: Collection[int], allocates: bool = True
+) -> FunctionType:
     """Copy of a function that reads the numbers that differ from memory."""
     from fuzzytrack.kernels.llvm import inlined
     from fuzzytrack.kernels.slots import Slot
@@ -177,7 +183,7 @@ def _reading(function: FunctionType, memory: Array, differ: Collection[int]) -> 
     def helper(copy: FunctionType) -> Any:
         # Code is linked by name.
         copy.__qualname__ = f"{copy.__name__}_{mark}_{place}"
-        return inlined(copy)
+        return inlined(copy, allocates)
 
     copy: FunctionType = _rebuilt(function, take, helper, {}).py_func
     return copy

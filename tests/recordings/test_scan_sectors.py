@@ -147,7 +147,7 @@ def test_the_place_of_a_radar_is_that_of_its_beam():
 
 def test_a_long_silence():
     columns, _, _ = turning_radar(9, targets=5, turns=12, clutter=5)
-    later = {**columns, "t": columns["t"] + 1e5 * 2.5}
+    later = {**columns, "t": columns["t"] + 1e3 * 2.5}
     both = {name: np.append(columns[name], later[name]) for name in columns}
     found = track_scans(both, sectors=8)
     assert found.totals.plots == 2 * len(columns["t"])
