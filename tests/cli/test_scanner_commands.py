@@ -2,11 +2,13 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from fuzzytrack.scan.association import associations
 from fuzzytrack.scan.scan_tracker import ScanTracker
 from fuzzytrack.scan.scanners import load_scanner, scanner_path, shipped_scanners
+from fuzzytrack.tuning import scanner_tuner
 
 
 @pytest.fixture
@@ -146,27 +148,85 @@ def test_a_part_of_a_script_is_there_with_the_option(run, fails, mine, tmp_path)
 # -------------------------------------------------------------------- tune
 
 
-@pytest.mark.untraced
+@pytest.fixture
+def no_runs(monkeypatch):
+    """How far two numbers are from those that are best stands for what runs would give."""
+
+    def values(self, tracker):
+        if tracker is None:
+            return np.full(len(self.groups), np.inf)
+        far = np.log([tracker.gate.limit / 12, tracker.confirmation.hits / 5])
+        return np.full(len(self.groups), far @ far)
+
+    monkeypatch.setattr(scanner_tuner._Trials, "_values", values)
+
+
+TUNE = (
+    "scanner", "tune", "default", "crossing:scans.count=8", "--runs", "1",
+    "--free", "confirmation.hits,gate.limit",
+)  # fmt: skip
+
+
+@pytest.mark.usefixtures("no_runs")
 def test_tune(run, tmp_path):
     out = tmp_path / "tuned.yaml"
-    words = (
-        "scanner", "tune", "default", "crossing:scans.count=8", "--runs", "1", "--trials", "4",
-        "--free", "confirmation.hits,gate.limit", "--json",
-    )  # fmt: skip
-    result = run(*words, "-o", out)
+    result = run(*TUNE, "--trials", "14", "--json", "-o", out)
     assert result.exit_code == 0, result.output
     found = json.loads(result.stdout)
     assert found["numbers"].keys() == {"confirmation.hits", "gate.limit"}
+    assert found["mean"]["tuned"] < found["mean"]["start"]
     tuned = load_scanner(out)
     assert tuned.gate.limit == pytest.approx(found["numbers"]["gate.limit"])
     assert tuned.confirmation.hits == found["numbers"]["confirmation.hits"]
     assert tuned.clutter == ScanTracker().clutter
 
 
-def test_what_cannot_be_tuned_is_told_in_one_line(fails):
-    words = ("scanner", "tune", "default", "crossing:scans.count=8")
-    assert "no number 'gate.limt'" in fails(*words, "--free", "gate.limt")
-    assert "unknown 'osp'" in fails(*words, "--metric", "osp")
+@pytest.mark.usefixtures("no_runs")
+def test_tune_prints_the_numbers_and_the_configuration(run, tmp_path):
+    lines = run(*TUNE, "--trials", "7").stdout.splitlines()
+    assert lines[0] == "1 recording, 7 trials, seed 0"
+    rows = [line.split() for line in lines]
+    start = [row[:2] for row in rows if row[:1] in (["confirmation.hits"], ["gate.limit"])]
+    assert start[:2] == [["gate.limit", "16"], ["confirmation.hits", "3"]]
+    assert "based_on: default" in lines
+    out = tmp_path / "tuned.yaml"
+    assert run(*TUNE, "--trials", "7", "-o", out).stdout.splitlines()[-1] == f"wrote {out}"
+
+
+def test_tune_that_is_interrupted_is_resumed(run, tmp_path, monkeypatch):
+    count = 0
+
+    def values(self, tracker):
+        nonlocal count
+        count += 1
+        if count == 12:
+            raise KeyboardInterrupt
+        return np.full(len(self.groups), 1.0)
+
+    monkeypatch.setattr(scanner_tuner._Trials, "_values", values)
+    words = (*TUNE, "--trials", "18", "--state", tmp_path / "state.json")
+    result = run(*words)
+    assert result.exit_code == 130
+    assert f"the search is in {tmp_path / 'state.json'}; continue with --resume" in result.stderr
+    assert run(*words, "--resume").exit_code == 0
+    # The start and the best, before and after; a generation of six was kept.
+    assert count == 12 + 12 + 2
+    count = 11
+    assert run(*TUNE, "--trials", "18").exit_code == 130
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--free", "gate.limt"], "no number 'gate.limt'"),
+        (["--metric", "osp"], "unknown 'osp'"),
+        (["-o", "tuned.csv"], "output: tuned.csv must end in .yaml"),
+        (["--lag", "soon"], "--lag: "),
+        (["--period", "soon"], "--period: "),
+    ],
+)
+def test_what_cannot_be_tuned_is_told_in_one_line(fails, words, said):
+    assert said in fails("scanner", "tune", "default", "crossing:scans.count=8", *words)
 
 
 def test_a_list_in_place_of_a_number_and_a_key_that_is_none(fails, tmp_path):
