@@ -12,6 +12,7 @@ LOWEST_TESTS ?= tests/test_public_names.py tests/cli/test_app.py tests/cli/test_
 FUZZ_COUNT ?= 1000000
 FUZZ_FILES ?= 100000
 BENCH_ARGS ?=
+PIP_ARGS ?=
 
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip -qq --disable-pip-version-check --no-input
@@ -45,7 +46,7 @@ $(VENV)/.installed-%: pyproject.toml | $(BIN)/python
 
 # Both extras at once: pip then looks each package up once.
 environment: pyproject.toml | $(BIN)/python ## Install what test, lint and docs need
-	$(PIP) install --editable '.[test,docs]'
+	$(PIP) install $(PIP_ARGS) --editable '.[test,docs]'
 	@touch $(VENV)/.installed-test $(VENV)/.installed-docs
 
 lowest-environment: $(LOWEST)/.installed
@@ -66,7 +67,7 @@ test: $(VENV)/.installed-test ## Run every test, with branch coverage (PYTEST_AR
 $(LOWEST)/.installed: pyproject.toml .ci/lowest.py
 	$(PYTHON) -m venv $(LOWEST)
 	$(PYTHON) .ci/lowest.py > $(LOWEST)/constraints.txt
-	$(LOWEST)/bin/python -m pip -qq --disable-pip-version-check --no-input install \
+	$(LOWEST)/bin/python -m pip -qq --disable-pip-version-check --no-input install $(PIP_ARGS) \
 		--constraint $(LOWEST)/constraints.txt --editable '.[parquet,zst,geo,asterix,ais]' pytest hypothesis jsonschema
 	@touch $@
 

@@ -108,6 +108,7 @@ def rulebases(draw):
     return base(inputs, distinct.values())
 
 
+@pytest.mark.untraced
 @settings(max_examples=300)
 @given(rulebases())
 def test_there_is_a_hole_exactly_where_a_fine_grid_has_one(rules):

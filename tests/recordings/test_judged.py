@@ -173,6 +173,7 @@ def test_tracks_begin_again():
     assert sum(each.begins.sum() for each in found) > 3
 
 
+@pytest.mark.untraced
 @example(seed=1, n=6, n_tracks=2, share=0.7, again=0, cuts=[])
 @example(seed=0, n=39, n_tracks=3, share=0.7, again=0, cuts=[])
 @given(

@@ -109,6 +109,7 @@ def late_feeds(draw):
     return [rows[k] for k in np.argsort(arrival, kind="stable")], lateness, rng
 
 
+@pytest.mark.untraced
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.TrackWarning")
 @pytest.mark.parametrize(
     ("tracker", "options"),

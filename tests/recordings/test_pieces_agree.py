@@ -81,6 +81,7 @@ def by_track(path):
 
 
 # Of gains that do not suit the times, which the recordings change.
+@pytest.mark.untraced
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.TrackWarning")
 @settings(
     max_examples=15,

@@ -72,6 +72,7 @@ def test_an_airliner_from_range_and_azimuth(real):
     assert rms(result.predicted, truth) < 146
 
 
+@pytest.mark.untraced
 def test_its_published_places(real):
     path = real("adsb_turns/truth_1s.csv")
     smooth = ft.track(path, id="icao24")

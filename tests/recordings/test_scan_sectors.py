@@ -84,6 +84,7 @@ def test_reports_come_within_two_sectors():
     assert np.quantile(waited, 0.95) < sectors.latency + np.diff(columns["t"]).max()
 
 
+@pytest.mark.untraced
 @settings(max_examples=10, deadline=None, phases=[Phase.explicit, Phase.generate])
 @given(st.lists(st.integers(1, 900), max_size=6), st.integers(0, 900))
 def test_pieces_and_a_pickle_give_the_same_reports(cuts, saved):

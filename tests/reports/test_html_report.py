@@ -223,6 +223,7 @@ def test_title(results, tmp_path, words_only):
     assert page.words["h1"] == page.words["title"] == "Mine & 'yours'"
 
 
+@pytest.mark.untraced
 def test_the_same_results_with_the_same_date_give_the_same_bytes(tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     few = made_up(names=("a", "b"), nis=False)

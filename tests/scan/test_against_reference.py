@@ -83,6 +83,7 @@ def test_a_radar_whose_place_is_not_known(seed):
     assert compare(scans) > 0
 
 
+@pytest.mark.untraced
 @settings(max_examples=25, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),

@@ -136,6 +136,7 @@ def test_a_mistake_is_one_line_with_its_place(text, place, message):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.untraced
 @given(st.data())
 def test_a_damaged_text_is_read_or_refused(data):
     text = BASE + "kind: {part: bank, hits: 5, tracker: imm}\n"

@@ -149,6 +149,7 @@ def test_arcs_keep_their_range_from_a_radar_that_moves():
     assert kept.mean() > 0.7
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize(("sweep", "wander"), [((0.02, 0.02), 0.0), ((0.0, 0.0), 6.0)])
 def test_arcs_sweep_or_wander_along_their_range(sweep, wander):
     arcs = Arcs(

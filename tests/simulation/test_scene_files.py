@@ -337,6 +337,7 @@ def values(declared):
     return forms[declared.form]
 
 
+@pytest.mark.untraced
 @given(data=st.data())
 def test_what_is_written_is_read(data):
     """Any allowed values of the radar and of the scans are read as they were written."""

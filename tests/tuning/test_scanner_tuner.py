@@ -102,6 +102,7 @@ def test_groups_are_left_out():
     assert "on groups that were left out" in found.verdict
 
 
+@pytest.mark.untraced
 @pytest.mark.usefixtures("judged")
 def test_the_same_seed_gives_the_same_and_a_search_is_resumed(tmp_path):
     options = {"free": FREE, "trials": 40, "seed": 3}

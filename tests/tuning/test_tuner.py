@@ -63,6 +63,7 @@ def test_what_is_tuned_already_is_not_worth_it():
     assert found.start == {"alpha": alpha, "beta": beta}
 
 
+@pytest.mark.untraced
 def test_a_rule_base_is_tuned_and_loads_again_to_the_tuned_tracker(tmp_path):
     found = ft.tune("mixed", "omega-schedule", free=["stiffness", "rho"], **QUICK)
     path = tmp_path / "tuned.yaml"
@@ -102,6 +103,7 @@ def test_errors_are_those_of_the_trackers_run_alone():
     assert found.start == {"sigma_v": 0.5}
 
 
+@pytest.mark.untraced
 def test_the_number_of_workers_does_not_matter():
     alone = ft.tune("mixed", "kalman-cv", **QUICK)
     with ThreadPoolExecutor(3) as pool:
@@ -198,6 +200,7 @@ def test_recorded_plots_without_truth_are_compared_with_themselves(tmp_path):
         found.save(tmp_path / "x.yaml")
 
 
+@pytest.mark.untraced
 def test_several_sources_are_tuned_on_together():
     found = ft.tune(["report", "mixed"], "kalman-cv", runs=12, trials=6, folds=2)
     assert found.data == "report, mixed"
