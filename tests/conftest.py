@@ -8,9 +8,10 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 # No test depends on time: a slow machine is no defect. `make test` tries the same examples in every
-# run; `make fuzz` draws new ones, and more of them.
+# run, `make lowest` fewer; `make fuzz` draws new ones, and more of them.
 _UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeatable", _UNTIMED, derandomize=True, max_examples=50)
+settings.register_profile("few", _UNTIMED, derandomize=True, max_examples=10)
 settings.register_profile("free", _UNTIMED, derandomize=False, max_examples=1000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 

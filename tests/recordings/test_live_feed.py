@@ -200,13 +200,15 @@ def test_silent_tracks_are_forgotten_and_memory_stays_flat():
     assert sorted(again.tracks.ids) == sorted(feed.tracks.ids)
 
 
-@pytest.mark.parametrize("size", [pytest.param(1, marks=pytest.mark.untraced), 500, 5000])
+@pytest.mark.parametrize("size", [1, 100, 5000])
 def test_a_row_that_is_out_of_order_does_not_decide_what_is_forgotten(size):
     feed = a_feed(id="id", forget=50.0)
     lines = ["t,id,x", "0,old,1", *(f"{k / 50},a,1" for k in range(1, 4000)), "10,a,2"]
     lines += [f"{80 + k / 100},b,1" for k in range(300)]
-    for start in range(0, len(lines), size):
-        feed.push([f"{line}\n".encode() for line in lines[start : start + size]])
+    rows = [f"{line}\n".encode() for line in lines]
+    feed.push(rows[:4000])
+    for start in range(4000, len(rows), size):
+        feed.push(rows[start : start + size])
     assert feed.tracks.counts["forgotten"] == 1
     assert feed.tracks.ids == ("a", "b")
 

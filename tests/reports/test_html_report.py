@@ -130,6 +130,7 @@ def both(results, tmp_path_factory):
     return written(tmp_path_factory.mktemp("report"), results)
 
 
+@pytest.mark.untraced
 def test_the_page_needs_nothing_else(both):
     text, page = both
     assert text.startswith("<!DOCTYPE html>")

@@ -575,6 +575,7 @@ def test_names_and_paths(tmp_path):
         load_scenario(tmp_path / "big.yaml")
 
 
+@pytest.mark.untraced
 def test_damaged_texts_load_or_are_complained_of():
     rng = random.Random(1)
     whole = [scenario_path(name).read_text() for name in ("llinas-m1", "waypoints", "s3-coloured")]

@@ -305,6 +305,7 @@ def test_students_distribution_is_not_misled_by_an_outlier():
     assert off[1] < 0.7 * off[0]
 
 
+@pytest.mark.untraced
 def test_single_precision():
     times, z, sigma = plots(9, 2)
     tracker = two_model_imm()

@@ -70,6 +70,7 @@ def plain(tracker, scans):
 FREE = ("clutter.cell", "confirmation.hits")
 
 
+@pytest.mark.untraced
 @pytest.mark.usefixtures("judged")
 def test_it_finds_the_best_numbers():
     found = tune_scanner(RECORDINGS, "default", free=FREE, trials=150, name="mine")
