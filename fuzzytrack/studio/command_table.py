@@ -8,6 +8,7 @@ from typing import Any
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.simulation.scenario_files import scenario_source, shipped_scenarios
 from fuzzytrack.studio import (
+    data_handlers,
     export_handlers,
     rule_handlers,
     run_handlers,
@@ -53,6 +54,7 @@ HANDLERS: dict[str, Handler] = {
     **surface_handlers.HANDLERS,
     **world_handlers.HANDLERS,
     **run_handlers.HANDLERS,
+    **data_handlers.HANDLERS,
     **export_handlers.HANDLERS,
 }
 

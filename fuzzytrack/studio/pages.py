@@ -17,6 +17,7 @@ from fuzzytrack.studio.messages import event
 from fuzzytrack.studio.run_jobs import Run
 from fuzzytrack.studio.session import Session
 from fuzzytrack.studio.tracker_texts import listed_trackers
+from fuzzytrack.studio.uploads import Uploads
 
 __all__ = ["Line", "Page", "RunCommand", "Studio"]
 
@@ -147,6 +148,7 @@ class Studio:
         self.folder = Folder(folder)
         self.command = command
         self.jobs = Jobs()
+        self.uploads = Uploads(self.folder)
         self._pages: dict[str, Page] = {}
         self._lock = threading.Lock()
         self._trackers: list[dict[str, Any]] | None = None
@@ -200,7 +202,8 @@ class Studio:
         del self._pages[min(closed, key=lambda page: page.used).key]
 
     def close(self) -> None:
-        """End the job that runs, and keep drafts of what has changed."""
+        """End the job that runs, keep drafts of what has changed, and drop recordings."""
         self.jobs.close()
+        self.uploads.close()
         for page in self._pages.values():
             page.save_draft()

@@ -11,7 +11,9 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers, catalog, tracker_of_rules
 
-__all__ = ["EDITOR", "MOST_TRACKERS", "SAVED", "listed_trackers", "make_trackers"]
+__all__ = [
+    "EDITOR", "MOST_TRACKERS", "SAVED", "check_place", "listed_trackers", "make_trackers",
+]  # fmt: skip
 
 #: Names of the rule base as it is in the editor, and as it was last saved or opened.
 EDITOR, SAVED = "editor", "saved"
@@ -47,12 +49,8 @@ def make_trackers(
     for text in texts:
         if text in named:
             raise ValueError(f"trackers: {text!r} is given twice")
+        check_place(text, "trackers")
         name, options = specs.split(text, "tracker")
-        for value in (*options.values(), name):
-            if "/" in value or "\\" in value:
-                raise ValueError(f"trackers: {text!r} names a file outside of the folder")
-            if specs.is_file(value) and value != name:
-                raise ValueError(f"trackers: {text!r}: a file cannot be a parameter here")
         if name in (EDITOR, SAVED):
             named[text] = _of_rules(text, edited(name), options)
         elif specs.is_file(name):
@@ -60,6 +58,28 @@ def make_trackers(
         else:
             named[text] = text
     return as_trackers(named)
+
+
+def check_place(text: str, argument: str) -> None:
+    """Refuse a tracker that names a file which is not in the folder.
+
+    Parameters
+    ----------
+    text : str
+        As a page names a tracker.
+    argument : str
+        Its argument, for messages.
+
+    Raises
+    ------
+    ValueError
+    """
+    name, options = specs.split(text, "tracker")
+    for value in (*options.values(), name):
+        if "/" in value or "\\" in value:
+            raise ValueError(f"{argument}: {text!r} names a file outside of the folder")
+    if any(map(specs.is_file, options.values())):
+        raise ValueError(f"{argument}: {text!r}: a file cannot be a parameter here")
 
 
 def _of_rules(text: str, rules: RuleBase, options: dict[str, str]) -> Tracker:

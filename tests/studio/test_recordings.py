@@ -1,0 +1,97 @@
+"""Recordings that a page is given: tracked, compared, tuned on."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from fuzzytrack.cli.app import app
+from fuzzytrack.fuzzy.loading import loads_rulebase
+
+TRACKERS = ["fixed:alpha=0.5377:beta=0.2018", "stiffness-damping"]
+
+
+@pytest.fixture(scope="module")
+def csv():
+    """Two tracks of a target that turns, with the truth beside the plots."""
+    random = np.random.default_rng(4)
+    lines = ["time,id,x,y,true_x,true_y"]
+    for name in "ab":
+        for k in range(110):
+            true = 900 * np.cos(k / 15), 900 * np.sin(k / 15 + ord(name))
+            plot = random.normal(true, 10)
+            lines.append(",".join(map(repr, [k, name, *map(float, plot), *map(float, true)])))
+    return "\n".join(lines).replace("'", "") + "\n"
+
+
+def test_a_recording_is_tracked_and_compared_as_by_the_command(page, csv, tmp_path):
+    found = page.ask("upload", name="mine.csv", text=csv)
+    assert found["columns"] == ["time", "id", "x", "y", "true_x", "true_y"]
+    # The file is named without the folder of the server.
+    assert found["problem"].startswith("mine.csv: row 112, column time")
+    found = page.ask("upload", name="mine.csv", text=csv, id="id")
+    assert (found["plots"], found["tracks"], found["axes"]) == (220, 2, 2)
+    truth = ["true_x", "true_y"]
+    found = page.ask("track", name="mine.csv", trackers=TRACKERS, id="id", sigma=10, truth=truth)
+    path = tmp_path / "mine.csv"
+    path.write_text(csv)
+    command = ["compare", str(path), "--trackers", ",".join(TRACKERS), "--sigma", "10"]
+    command += ["--id", "id", "--truth", ",".join(truth), "--json"]
+    expected = json.loads(CliRunner().invoke(app, command).output)["trackers"]
+    for row, score in zip(found["comparison"]["rows"], expected, strict=True):
+        assert row["rms"] == score["rms"]
+        assert row["predicted"] == score["true"]["predicted"]
+    assert found["comparison"]["columns"][0][0] == "predicted"
+    assert [(t["id"], len(t["time"])) for t in found["tracks"]] == [("a", 110), ("b", 110)]
+    drawn = found["tracks"][1]["trackers"]["stiffness-damping"]
+    assert len(drawn["filtered"]) == 110
+    assert drawn["innovation"][0] == [None, None]
+    # The editor holds the same rule base; without a number the noise is estimated.
+    other = page.ask("track", name="mine.csv", trackers=["editor"], id="id")
+    assert other["comparison"]["columns"][0][0] == "rms"
+
+
+def test_a_rule_base_is_tuned_and_opens_in_the_editor(page, csv):
+    page.ask("upload", name="mine.csv", text=csv)
+    number = page.ask("tune", on="mine.csv", id="id", free="outputs", trials=4, folds=2)["job"]
+    last = page.job(number)[-1]
+    assert last["state"] == "done", last["error"]
+    found = last["results"]
+    assert found["text"] is not None
+    assert found["before"] > 0
+    assert loads_rulebase(found["text"]).output_names == ("stiffness", "damping")
+    state = page.ask("set_text", text=found["text"])["state"]
+    assert state["complaints"] == []
+    assert page.ask("undo")["state"]["saved"]
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments", "message"),
+    [
+        ("upload", {"name": "../x.csv", "text": ""}, "name: '../x.csv' must be the name of a file"),
+        ("upload", {"name": "x.yaml", "text": ""}, "must be the name of a file that ends in .csv"),
+        ("track", {"name": "no.csv", "trackers": ["editor"]}, "drop the file on the page"),
+        ("track", {"name": "no.csv", "trackers": ["editor"], "sigma": "a"}, "drop the file"),
+        ("tune", {"tracker": "/etc/x.yaml"}, "names a file outside of the folder"),
+        ("tune", {"tracker": "editor:level=3"}, "takes no parameters here"),
+        ("tune", {"folds": 1}, "folds: needs a whole number from 2 to 100, got 1"),
+    ],
+)
+def test_what_cannot_be_done_with_a_recording_is_refused(page, command, arguments, message):
+    assert message in page.refused(command, **arguments)
+
+
+def test_more_plots_than_there_may_be_are_refused(page, monkeypatch):
+    monkeypatch.setattr("fuzzytrack.studio.uploads.MOST_PLOTS", 20)
+    text = "time,x\n" + "".join(f"{k},{k}\n" for k in range(30))
+    found = page.ask("upload", name="many.csv", text=text)
+    assert "has more than 20 plots" in found["problem"]
+
+
+def test_sixteen_recordings_are_kept(server, page):
+    text = "time,x\n" + "".join(f"{k},{k * k % 7}\n" for k in range(9))
+    for number in range(17):
+        page.ask("upload", name=f"r{number}.csv", text=text)
+    assert "is not in the folder" in page.refused("track", name="r0.csv", trackers=["editor"])
+    assert page.ask("track", name="r1.csv", trackers=["fixed:alpha=0.5:beta=0.2"])["plots"] == 9
