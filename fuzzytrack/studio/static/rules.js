@@ -276,6 +276,7 @@ export function mount(element, app) {
   }
 
   function showOperators({ operators: all }) {
+    operators.dataset.known = JSON.stringify(all);
     operators.replaceChildren(
       ...Object.entries(all).map(([name, { value, choices }]) =>
         html(
@@ -309,7 +310,7 @@ export function mount(element, app) {
       editor = null;
       build(rulebase);
     }
-    showOperators(rulebase);
+    if (JSON.stringify(rulebase.operators) !== operators.dataset.known) showOperators(rulebase);
     about.textContent = rulebase.description;
     complaints.replaceChildren(...state.complaints.map((one) => complaintRow(one, () => goTo(one))));
     const outputs = outputsOf(rulebase);

@@ -167,17 +167,32 @@ export function mount(element, app) {
       const middle = (universe[0] + universe[1]) / 2;
       for (const { set, shape, parameters: p } of [...changed.values()]) {
         const twin = sets[sets.length - 1 - sets.findIndex(({ name }) => name === set)];
-        if (!changed.has(twin.name)) changed.set(twin.name, { set: twin.name, ...mirrored({ shape, parameters: p }, middle) });
+        const image = mirrored({ shape, parameters: p }, middle);
+        if (twin.name === set) image.parameters = evened({ shape, parameters: p }, twin.parameters, middle);
+        else if (changed.has(twin.name)) continue;
+        changed.set(twin.name, { set: twin.name, ...image });
       }
     }
     return [...changed.values()].map((shape) => ({ ...shape, parameters: shape.parameters.map(tidy) }));
   }
 
+  /** As far toward `value` as the neighbors that move along let a corner go. */
+  function allowed(set, corner, value) {
+    if (!store.now.linked || !possible()) return value;
+    const from = corner.place(set.parameters);
+    let to = value;
+    for (const other of held.all.filter(({ name }) => name !== set.name)) {
+      for (const near of cornersAt(other, from)) {
+        to = near.place(moved(other, near, to, step() / 10));
+      }
+    }
+    return to;
+  }
+
   function follow(changed, other, from, to) {
     let { parameters } = changed.get(other.name) ?? other;
     let touched = false;
-    for (const corner of SHAPES[other.shape].corners) {
-      if (Math.abs(corner.place(other.parameters) - from) > 1e-9) continue;
+    for (const corner of cornersAt(other, from)) {
       parameters = moved({ shape: other.shape, parameters }, corner, to, step() / 10);
       touched = true;
     }
@@ -197,7 +212,7 @@ export function mount(element, app) {
   function move(value, free) {
     const { before, corner, from } = held;
     const parameters = corner
-      ? moved(before, corner, snapped(value, before.name, free), step() / 10)
+      ? moved(before, corner, allowed(before, corner, snapped(value, before.name, free)), step() / 10)
       : shifted(before, snapStep(value - from, free));
     held.shapes = followed(before, parameters);
     store.set({ dragging: true });
@@ -481,6 +496,10 @@ export function mount(element, app) {
     const [low, high, points] = target.universe;
     const grid = shown((high - low) / Math.max(1, points - 1), 3);
     const others = target.shared_with.join(" and ");
+    // A drag changes the state many times a second, and the options hardly ever.
+    const known = JSON.stringify([target.name, others, grid, snap, linked, mirror, shared, possible()]);
+    if (options.dataset.known === known) return;
+    options.dataset.known = known;
     options.replaceChildren(
       select(
         "Snap",
@@ -545,6 +564,18 @@ function rounded(parameter) {
 
 function clamp(value, { low, high }) {
   return Math.max(low, Math.min(high, value));
+}
+
+function cornersAt({ shape, parameters }, place) {
+  return SHAPES[shape].corners.filter((corner) => Math.abs(corner.place(parameters) - place) < 1e-9);
+}
+
+/** A set that is its own mirror: what was changed changes on the other side; the middle stays. */
+function evened(one, before, middle) {
+  const image = mirrored(one, middle).parameters;
+  const both = one.parameters.map((p, k) => (p === before[k] ? image[k] : p));
+  const again = mirrored({ ...one, parameters: both }, middle).parameters;
+  return both.every((p, k) => Math.abs(p - again[k]) < 1e-9) ? both : before;
 }
 
 /** Corners of a set that a change moves: pairs of the place before and after. */

@@ -13,6 +13,9 @@ export const title = "Surface";
 const HEIGHT = 0.85;
 const HOME = { azimuth: -125, elevation: 30, zoom: 1 };
 const POINTS = [31, 61, 121, 201];
+// How far a face reaches below the next one, which hides it; else the ground would shine through.
+const OVERLAP = 0.4;
+const GRAY = [150, 150, 150];
 // From the viewer's upper left, in (right, up, toward the viewer).
 const LIGHT = [-0.42, 0.55, 0.72];
 
@@ -226,6 +229,7 @@ class Painter {
     this.palette = paletteOf(values, palette);
     this.range = rangeOf(values);
     this.share = shadeVisits ? visitShares(visits) : null;
+    this.paints = new Map();
     this.#look(camera);
   }
 
@@ -293,28 +297,59 @@ class Painter {
 
   /** Faces from the farthest to the nearest, which hides what lies behind without sorting. */
   #faces(pen) {
-    const { palette, share } = this;
     const { columns, rows, heights } = this.values;
     const [low, high] = this.range;
     const { places, levels } = this.#project();
-    const [line, gray] = [token("--mesh"), [150, 150, 150]];
+    const line = token("--mesh");
     const step = Math.max(1, Math.round((columns - 1) / 20));
+    const [face, edge] = [new Float64Array(8), new Float64Array(4)];
+    const [nearX, nearY] = this.near;
+    /** A corner, moved toward the next faces to be drawn if it is on their side. */
+    const put = (at, i, j, right, up) => {
+      const k = j * columns + i;
+      const [x, y] = [i + nearX, j + nearY];
+      const besides = right && x >= 0 && x < columns ? k + nearX : k;
+      const behind = up && y >= 0 && y < rows ? k + nearY * columns : k;
+      for (let part = 0; part < 2; part += 1) {
+        const own = places[2 * k + part];
+        const far = places[2 * besides + part] + places[2 * behind + part] - 2 * own;
+        face[2 * at + part] = Number.isNaN(far) ? own : own + OVERLAP * far;
+      }
+    };
+    const draw = (a, k) => {
+      edge.set([places[2 * a], places[2 * a + 1], places[2 * k], places[2 * k + 1]]);
+      pen.line(edge, line, 0.6);
+    };
     this.#eachFace((i, j) => {
       const a = j * columns + i;
       const [b, c, d] = [a + 1, a + columns + 1, a + columns];
       const mean = (heights[a] + heights[b] + heights[c] + heights[d]) / 4;
       if (Number.isNaN(mean)) return;
-      const corner = [a, b, c, d].flatMap((k) => [places[2 * k], places[2 * k + 1]]);
-      let paint = color(palette, (mean - low) / (high - low));
-      if (share) {
-        const seen = share((i + 0.5) / (columns - 1), (j + 0.5) / (rows - 1));
-        paint = mix(gray, paint, seen ? 0.3 + 0.7 * seen : 0);
-      }
-      const fill = css(paint, this.#brightness(levels, a, b, c, d));
-      pen.polygon(corner, fill, fill, 0.8);
-      if (j % step === 0) pen.line(corner.slice(0, 4), line, 0.6);
-      if (i % step === 0) pen.line([...corner.slice(0, 2), ...corner.slice(6)], line, 0.6);
+      put(0, i, j, nearX < 0, nearY < 0);
+      put(1, i + 1, j, nearX > 0, nearY < 0);
+      put(2, i + 1, j + 1, nearX > 0, nearY > 0);
+      put(3, i, j + 1, nearX < 0, nearY > 0);
+      const light = this.#brightness(levels, a, b, c, d);
+      const seen = this.share?.((i + 0.5) / (columns - 1), (j + 0.5) / (rows - 1)) ?? 1;
+      pen.polygon(face, this.#paint((mean - low) / (high - low), light, seen));
+      if (j % step === 0) draw(a, b);
+      if (i % step === 0) draw(a, d);
     });
+  }
+
+  /** Color of a face; the same few hundred come again and again. */
+  #paint(share, light, seen) {
+    const steps = [255 * share, 40 * light, 15 * seen].map(Math.round);
+    const key = (steps[0] * 64 + steps[1]) * 16 + steps[2];
+    let found = this.paints.get(key);
+    if (!found) {
+      const plain = color(this.palette, share);
+      // Without a visit it is gray; the more visits, the more color.
+      const paint = seen === 1 ? plain : mix(GRAY, plain, seen ? 0.3 + 0.7 * seen : 0);
+      found = css(paint, steps[1] / 40);
+      this.paints.set(key, found);
+    }
+    return found;
   }
 
   #eachFace(visit) {
@@ -332,9 +367,7 @@ class Painter {
     for (let k = 0; k < heights.length; k += 1) {
       levels[k] = this.level(heights[k]);
       const [x, y] = [k % columns, Math.floor(k / columns)];
-      const place = this.at((2 * x) / (columns - 1) - 1, (2 * y) / (rows - 1) - 1, levels[k]);
-      places[2 * k] = place[0];
-      places[2 * k + 1] = place[1];
+      places.set(this.at((2 * x) / (columns - 1) - 1, (2 * y) / (rows - 1) - 1, levels[k]), 2 * k);
     }
     return { places, levels };
   }
@@ -391,7 +424,7 @@ class Painter {
     for (const value of ticks(...this.range, 4)) {
       const [left, top] = this.at(x, y, this.level(value));
       pen.line([left - 4, top, left, top], muted);
-      pen.text(left - 7, top, shown(value), { fill: muted, align: "end" });
+      pen.text(left - 8, top - 3, shown(value), { fill: muted, align: "end" });
     }
   }
 
