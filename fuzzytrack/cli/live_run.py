@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from fuzzytrack.cli.complaints import one_line
 from fuzzytrack.cli.interrupts import Interrupts
 from fuzzytrack.cli.output import say_aside
+from fuzzytrack.errors import DataError
 from fuzzytrack.io.line_target import LineTarget
 from fuzzytrack.recordings.resumed_lines import ResumedLines
 from fuzzytrack.recordings.run_state import RunState
@@ -181,10 +182,19 @@ class LiveRun:
         if self._file is not None and self._feed.begun:
             # Before the last answers, so that a run goes on as if the feed had not ended.
             self._save(self._file)
-        if not interrupted or (self._file is None and self._feed.begun):
+        if not self._feed.begun and interrupted:
+            self._say_why()
+        elif not interrupted or self._file is None:
             self._write(self._feed.finish())
         if self._file is not None:
             self._file.wait()
+
+    def _say_why(self) -> None:
+        """Say why nothing was answered, if the feed had anything."""
+        try:
+            self._write(self._feed.finish())
+        except DataError as error:
+            say_aside(one_line(error).removeprefix("error: "))
 
     def _save(self, file: StateFile) -> None:
         """Save the state; a run goes on without, as long as it can say so."""

@@ -144,7 +144,7 @@ class ScanPlots:
         # An open source is one of a live feed.
         inputs = (plots,) if hasattr(plots, "tables") else inputs_of(plots)
         files = PlotFiles.of(inputs, _without_identities(inputs[0], reading), identified=False)
-        _check_plots(files.decoder)
+        _check_plots(files.decoder, files.names[0])
         radar = _radar(files, own, sectors)
         still = _is_place(own)
         own = None if still else own
@@ -404,12 +404,12 @@ def _without_identities(first: Any, reading: Reading) -> Reading:
     return reading
 
 
-def _check_plots(decoder: PlotDecoder) -> None:
+def _check_plots(decoder: PlotDecoder, file: str) -> None:
     columns = decoder.columns
     if len(columns.axes) < 2:
         raise DataError(
-            f"columns {', '.join(columns.read)}: plots of a scan have two coordinates; name them "
-            "with `axes`, `polar` or `geodetic`"
+            f"{file}: column {', '.join(columns.read)}: plots of a scan have two coordinates; name "
+            "both with `axes`, `polar` or `geodetic`"
         )
     if decoder.noise_is_polar and any(decoder.noise[:2]) and None in decoder.noise:
         raise ValueError(

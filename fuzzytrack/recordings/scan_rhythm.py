@@ -87,6 +87,8 @@ def period_doubt(rows: ScanRows, period: float) -> str:
 def _by_gaps(time: Array, steps: Array) -> tuple[ScanCut | None, str]:
     """Scans between which there are longer times than within."""
     positive = np.sort(steps[steps > 0])
+    if len(time) <= FEWEST:
+        return None, f"{len(time)} plots are too few to recognize it"
     if len(positive) < FEWEST or positive[-1] < _APART * positive[0]:
         return None, "the times between plots have no two kinds, within scans and between them"
     # The widest step on a scale of ratios, where neither side is a handful of rows.

@@ -267,6 +267,12 @@ def test_gaps_are_recognized_and_silent_scans_put_in():
     assert sizes == [5, 5, 5, 5, 0, *[5] * 15]
 
 
+def test_a_few_plots_are_not_recognized():
+    t = np.arange(5) * 1.0
+    with pytest.raises(DataError, match="5 plots are too few to recognize it; name the column"):
+        ScanPlots.of(plots_of(t=t, x=t, y=t))
+
+
 def test_what_is_not_recognized_says_what_to_give():
     rng = np.random.default_rng(5)
     t = np.arange(50) + rng.uniform(0, 0.3, 50)
