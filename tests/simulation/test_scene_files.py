@@ -382,7 +382,7 @@ def test_the_schema_has_every_kind_of_clutter():
 
 def test_the_example_of_the_page_is_read_and_its_error_is_the_one_shown():
     page = (Path(__file__).parents[2] / "docs" / "scenes.md").read_text("utf-8")
-    (text,) = re.findall(r"```yaml\n(.*?)```", page, flags=re.S)
+    text, *_ = re.findall(r"```yaml\n(.*?)```", page, flags=re.S)
     assert simulate_scans(loads_scene(text)).truth.n_targets > 10
     (shown,) = re.findall(r"```text\n(bay.yaml.*)\n```", page)
     assert refused(text.replace("0.95", "1.95")) == shown
