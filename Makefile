@@ -45,7 +45,7 @@ $(VENV)/.installed-%: pyproject.toml | $(BIN)/python
 
 .PRECIOUS: $(VENV)/.installed-%
 
-# Both extras at once: pip then looks each package up once.
+# All extras at once: pip then looks each package up once.
 environment: pyproject.toml | $(BIN)/python ## Install what test, lint and docs need
 	$(PIP) install $(PIP_ARGS) --editable '.[test,docs]'
 	@touch $(VENV)/.installed-test $(VENV)/.installed-docs
