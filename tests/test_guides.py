@@ -27,6 +27,7 @@ def run(tmp_path, monkeypatch):
     return call
 
 
+@pytest.mark.untraced
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
 def test_the_guide_of_certificates(run):
     page = ROOT / "docs" / "certify.md"
@@ -47,6 +48,7 @@ def test_the_guide_of_certificates(run):
             mine.write_text(text)
 
 
+@pytest.mark.untraced
 @pytest.mark.filterwarnings("ignore::fuzzytrack.errors.CacheWarning")
 def test_the_guide_of_tuning(run):
     """A search of a few trials stands for those of the page, so the numbers are others."""

@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from pathlib import Path
 
 import pytest
 
@@ -65,20 +64,16 @@ def test_why_nothing_is_kept_is_said(run, folder, monkeypatch):
 # ---------------------------------------------------------------- nothing can be kept
 
 
-def experiment(out, *before, home):
-    """Run a job that is large enough to be compiled, for one tracker; gives its stderr."""
+def stderr_of(*words, home, folder):
+    """Run a command of this interpreter in a folder; gives its stderr."""
     done = subprocess.run(
-        [
-            *before, sys.executable, "-m", "fuzzytrack", "testbed", "llinas-m1", "--runs", "6000",
-            "--trackers", "fixed:alpha=0.53:beta=0.21", "-o", str(out),
-        ],
+        words,
         env={"HOME": home, "PATH": os.defpath, "PYTHONPATH": os.environ.get("PYTHONPATH", "")},
-        cwd=out.parent,
+        cwd=folder,
         capture_output=True,
         text=True,
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stderr
-    assert (out / "report.html").is_file()
     return done.stderr
 
 
@@ -88,8 +83,24 @@ needs_posix = pytest.mark.skipif(os.name != "posix", reason="says where caches a
 @pytest.mark.untraced
 @needs_posix
 def test_a_home_that_cannot_be_made(tmp_path):
-    said = experiment(tmp_path / "out", home="/dev/null/home")
+    # A job that is large enough to be compiled, for one tracker.
+    said = stderr_of(
+        sys.executable, "-m", "fuzzytrack", "testbed", "llinas-m1", "--runs", "6000",
+        "--trackers", "fixed:alpha=0.53:beta=0.21", "-o", "out", home="/dev/null/home",
+        folder=tmp_path,
+    )  # fmt: skip
+    assert (tmp_path / "out" / "report.html").is_file()
     assert said.count("warning: compiled code is not kept for other processes: /dev/null/") == 1
+
+
+COMPILE_TWO = """
+from fuzzytrack.kernels.compile import compiled
+
+def made(offset):
+    return lambda x: x + offset
+
+assert [compiled(made(offset))(1.0) for offset in (1.0, 2.0)] == [2.0, 3.0]
+"""
 
 
 @pytest.mark.untraced
@@ -107,7 +118,8 @@ def test_a_user_who_can_write_nowhere_else():
     if subprocess.run([*nobody, sys.executable, "-c", "pass"], capture_output=True).returncode:
         pytest.skip("this system does not let root become another user who may read everything")
     # The folders of pytest are closed to others.
-    with tempfile.TemporaryDirectory() as out:
-        os.chown(out, 65534, 65534)
-        said = experiment(Path(out), *nobody, home="/nonexistent")
-    assert said.count("warning: compiled code is not kept for other processes: /nonexistent/") == 1
+    with tempfile.TemporaryDirectory() as folder:
+        os.chown(folder, 65534, 65534)
+        words = (*nobody, sys.executable, "-c", COMPILE_TWO)
+        said = stderr_of(*words, home="/nonexistent", folder=folder)
+    assert said.count("compiled code is not kept for other processes: /nonexistent/") == 1

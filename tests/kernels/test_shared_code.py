@@ -33,7 +33,7 @@ def compilations(monkeypatch):
     [
         ["kalman-cv:sigma_v=0.5", "kalman-cv:sigma_v=3", "kalman-cv:sigma_v=0.01"],
         ["imm:quiet_sigma=0.1:maneuver_sigma=2", "imm:quiet_sigma=0.3:maneuver_sigma=1"],
-        ["maneuver-two-rules:level=10", "maneuver-two-rules:level=5"],
+        ["stiffness-damping:period=1", "stiffness-damping:period=2"],
     ],
 )
 def test_results_are_those_of_plain_python_to_the_bit(texts, compilations):
