@@ -4,7 +4,7 @@ import { html, svg } from "./elements.js";
 import { fillClass, lineStyle, pathOf, swatch } from "./lines.js";
 import { shown, ticks } from "./numbers.js";
 
-const MARGIN = { left: 54, right: 12, top: 10, bottom: 38 };
+const MARGIN = { left: 62, right: 12, top: 10, bottom: 38 };
 const HEADROOM = 1.05;
 // Of more lines the bands are not read out, or the picture would be covered.
 const MOST_RANGES = 2;

@@ -33,7 +33,7 @@ export function mount(element, app) {
   const compare = action("Track and compare", run, { class: "primary" });
   const facts = html("p", { class: "muted" });
   const notes = html("ul", { class: "notes" });
-  const table = html("div", { class: "scroll" });
+  const table = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" });
   const which = select("Track", [], "", (value) => store.set({ trackShown: Number(value) }));
   const axis = select("Axis", [], "", (value) => store.set({ axisShown: Number(value) }));
   const lines = () => Object.keys(shownTrack(store.now).trackers).map((name, index) => [name, index]);

@@ -8,7 +8,7 @@ let made = 0;
 /** A number; `change(value)` hears of a new one. `show(value)` shows one. */
 export function numberField(label, unit, change, { least = -Infinity, whole = false, title = "" } = {}) {
   const id = `field-${(made += 1)}`;
-  const input = html("input", { id, type: "text", inputmode: "decimal", autocomplete: "off", title });
+  const input = html("input", { id, type: "text", class: "number", inputmode: "decimal", autocomplete: "off", title });
   let current = null;
 
   function leave() {
@@ -37,13 +37,22 @@ export function numberField(label, unit, change, { least = -Infinity, whole = fa
     event.preventDefault();
     leave();
   });
+  const [nameShown, unitShown] = [html("label", { for: id }, label), html("span", { class: "unit" }, unit)];
   const element = html(
     "div",
     { class: "field" },
-    html("label", { for: id }, label),
-    html("span", { class: "with-unit" }, input, html("span", { class: "unit" }, unit)),
+    nameShown,
+    html("span", { class: "with-unit" }, input, unitShown),
   );
-  return { element, input, show };
+
+  /** Let the field be another number. */
+  function name(text, measure, help) {
+    nameShown.textContent = text;
+    unitShown.textContent = measure;
+    input.title = help;
+  }
+
+  return { element, input, show, name };
 }
 
 /** A group of fields under a heading. */

@@ -1,7 +1,7 @@
 /* Two designs side by side: their curves, the paired difference, and both tracks of the first run. */
 
 import { makeChart } from "./chart.js";
-import { errorsOf, namesOf, trajectoriesOf } from "./curves.js";
+import { errorsOf, finite, namesOf, trajectoriesOf } from "./curves.js";
 import { html, select } from "./elements.js";
 import { figure } from "./figure.js";
 import { keyOf } from "./lines.js";
@@ -75,14 +75,14 @@ export function mount(element, app) {
     });
     draw(now);
     // The difference is known when all runs are done.
-    if (resultsTab !== "pair" || job?.state === "running" || !app.can("paired")) return;
+    if (resultsTab !== "pair" || job?.state === "running") return;
     const wanted = JSON.stringify([pair, results.seed, results.runs, results.scenario, job?.id]);
     if (wanted === answered) return;
     answered = wanted;
     try {
       const found = await socket.send("paired", { first: pair[0], second: pair[1] });
       verdict.replaceChildren(...sentence(found, pair));
-      difference.show(differenceOf(results, pair, found));
+      difference.show(differenceOf(results, pair, found.over_time));
     } catch (error) {
       verdict.textContent = error.message;
     }
@@ -91,7 +91,6 @@ export function mount(element, app) {
   function draw({ results, pair, quantity, hidden }) {
     const both = namesOf(results).filter((name) => !pair.includes(name));
     errors.show(errorsOf({ results, hidden: both, quantity, band: "se" }));
-    if (!app.can("paired")) difference.show(differenceOf(results, pair, null));
     for (const map of maps) map.redraw();
   }
 
@@ -108,16 +107,13 @@ function lineOf({ results }, name) {
   return trajectoriesOf({ results, hidden: namesOf(results).filter((each) => each !== name) });
 }
 
-/** Second minus first, scan by scan; with a band of two standard errors if it is known. */
-function differenceOf(results, [one, other], found) {
-  const [before, after] = [one, other].map((name) => results.curves[name].predicted_rmse);
-  const over = found?.over_time;
-  const y = over?.difference ?? before.map((value, k) => (Number.isFinite(value) && Number.isFinite(after[k]) ? after[k] - value : null));
-  const around = (times) => over?.se?.map((se, k) => (Number.isFinite(se) && Number.isFinite(y[k]) ? y[k] + times * se : null));
+/** Second minus first, scan by scan, with a band of two standard errors. */
+function differenceOf(results, [one, other], { difference: y, se }) {
+  const around = (times) => y.map((value, k) => (finite(value) && finite(se[k]) ? value + times * se[k] : null));
   return {
-    name: `Difference of the error of prediction, ${other} minus ${one}`,
+    name: `Difference of the distance of prediction, ${other} minus ${one}`,
     x: { label: "time (s)" },
-    y: { label: "second − first (m)" },
+    y: { label: "second − first, mean (m)" },
     limits: [{ y: 0, label: "" }],
     series: [{ name: "difference", index: namesOf(results).indexOf(other), x: results.time, y, low: around(-2), high: around(2) }],
   };

@@ -79,6 +79,7 @@ export function mount(element, app) {
     if (running && job.done) bar.value = job.done / job.of;
     else bar.removeAttribute("value");
     words.textContent = job ? told(job) : "";
+    words.classList.toggle("failed", job?.state === "failed");
   });
   store.follow(["scenario"], ({ scenario }) => {
     if (!scenario) return;

@@ -19,7 +19,7 @@ export function openScenario({ store, scenario, say }) {
     say(changed ? `${name} is open; undo brings the changed scenario back.` : `${name} is open.`);
   }
 
-  return menu("Open a scenario", opened, () => {
+  return menu("Open a scenario", [html("span", { class: "unseen" }, "Scenario "), opened], () => {
     const { hello, files } = store.now;
     const own = files.filter(({ kind }) => kind === "scenario");
     return [

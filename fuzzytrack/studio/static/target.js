@@ -36,10 +36,13 @@ const KEPT = 6;
 /** The form; `points()` are the way-points on screen, `writePoints(points)` changes them. */
 export function targetForm({ store, scenario }, points, writePoints) {
   const kind = select("Maneuver", [], "", setKind);
+  // The speed along the way-points as it was set: the times in the text are rounded, and from edit to
+  // edit the speed would drift.
+  let speedSet = null;
   const list = waypointList(writePoints);
   const pace = choice("Pace along the way-points", setPace);
   const positive = { least: 1e-6 };
-  const speed = numberField("Speed", "m/s", (value) => setPoints({ speed: value }), positive);
+  const speed = numberField("Speed", "m/s", setSpeed, positive);
   const leg = numberField("Time a leg", "s", (value) => setPoints({ leg: value }), positive);
   const period = numberField(
     "Period", "s", (value) => setPoints({ period: value, ...timing() }),
@@ -88,16 +91,31 @@ export function targetForm({ store, scenario }, points, writePoints) {
     scenario.change("set_waypoints", { points: points(), ...change });
   }
 
+  function setSpeed(value) {
+    speedSet = value;
+    setPoints({ speed: value });
+  }
+
   function setPace(value) {
-    setPoints(value === "speed" ? { speed: meanSpeed(store.now.scenario) } : { leg: meanLeg(store.now.scenario) });
+    if (value === "speed") setSpeed(meanSpeed(store.now.scenario));
+    else setPoints({ leg: meanLeg(store.now.scenario) });
+  }
+
+  function speedNow(now) {
+    const mean = meanSpeed(now);
+    if (speedSet === null || Math.abs(mean / speedSet - 1) > 0.01) speedSet = mean;
+    return speedSet;
   }
 
   /** How way-points are paced when they change: as they were. */
   function timing() {
     const now = store.now.scenario;
     // A track that becomes one through way-points keeps its mean speed.
-    if (targetKind(now) !== "waypoints") return { speed: lengthOf(truthOf(now)) / durationOf(now) };
-    return now.target.times ? { speed: meanSpeed(now) } : { leg: meanLeg(now) };
+    if (targetKind(now) !== "waypoints") {
+      speedSet = Number((lengthOf(truthOf(now)) / durationOf(now)).toPrecision(3));
+      return { speed: speedSet };
+    }
+    return now.target.times ? { speed: speedNow(now) } : { leg: meanLeg(now) };
   }
 
   function show() {
@@ -142,7 +160,7 @@ export function targetForm({ store, scenario }, points, writePoints) {
     );
     speed.element.hidden = !bySpeed;
     leg.element.hidden = bySpeed;
-    speed.show(meanSpeed(now));
+    speed.show(speedNow(now));
     leg.show(meanLeg(now));
     const [begin, next] = now.scenario.time;
     period.show(now.target.period ?? next - begin);

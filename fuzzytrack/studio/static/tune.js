@@ -90,6 +90,7 @@ export function mount(element, app) {
     if (running && job.done) bar.value = job.done / job.of;
     else bar.removeAttribute("value");
     words.textContent = own ? told(job) : "";
+    words.classList.toggle("failed", own && job.state === "failed");
     if (own && job.results) store.set({ tuned: job.results });
   });
   store.follow(["tuned"], ({ tuned }) => {

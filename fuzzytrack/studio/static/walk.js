@@ -21,7 +21,7 @@ export function mount(element, app) {
   const play = html("button", { type: "button", onclick: toggle }, "Play");
   const when = html("output", { class: "mono" });
   const plot = html("dl", { class: "plot-facts" });
-  const rules = html("div", { class: "scroll" });
+  const rules = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Rules that fire" });
   const innovations = makeChart((value) => goTo(value));
   const gains = makeChart((value) => goTo(value));
   const map = makeMap({
@@ -120,7 +120,7 @@ export function mount(element, app) {
   function soFar() {
     if (!walk) return {};
     const coasted = walk.seen.map((seen) => !seen);
-    return { truth: walk.truth ?? [], plots: walk.plots, upto: at + 1, lines: [{ index: 0, points: walk.estimates, coasted }] };
+    return { truth: walk.truth ?? [], plots: walk.plots, upto: at + 1, lines: [{ index: Math.max(0, tracker.selectedIndex), points: walk.estimates, coasted }] };
   }
 
   function toggle() {

@@ -11,9 +11,9 @@ const STEP = 8;
 
 /**
  * The layer of the map. `read()` gives {points, between}: the way-points, and a place in the middle
- * of each leg; `write(points)` changes them; `redraw()` draws the map anew.
+ * of each leg; `write(points)` changes them, `draft(points)` shows them while they are dragged.
  */
-export function waypointLayer({ map, read, write }) {
+export function waypointLayer({ map, read, write, draft }) {
   const route = svg("polyline", { class: "route" });
   const middles = svg("g", {});
   const handles = svg("g", {});
@@ -68,7 +68,8 @@ export function waypointLayer({ map, read, write }) {
     const handle = event.currentTarget;
     const at = indexOf(handle);
     const fresh = handle.classList.contains("between");
-    const all = read().points.map((point) => [...point]);
+    const before = read().points.map((point) => [...point]);
+    const all = before.map((point) => [...point]);
     if (fresh) all.splice(at + 1, 0, [...read().between[at]]);
     const index = fresh ? at + 1 : at;
     let moved = fresh;
@@ -80,6 +81,7 @@ export function waypointLayer({ map, read, write }) {
       moved = true;
       all[index] = [rounded(x), rounded(y)];
       dragged = all;
+      draft(all);
       map.redraw();
     }
 
@@ -87,13 +89,10 @@ export function waypointLayer({ map, read, write }) {
       removeEventListener("pointermove", move);
       removeEventListener("pointerup", end);
       removeEventListener("keydown", escape, true);
-      const done = last.type === "pointerup" && moved;
+      if (!moved) return;
       // The points stay where they were put until the server has drawn the curve through them.
-      if (done) finish(all, index);
-      else {
-        dragged = null;
-        map.redraw();
-      }
+      if (last.type === "pointerup") finish(all, index);
+      else finish(before, at);
     }
 
     function escape(key) {
@@ -119,9 +118,10 @@ export function waypointLayer({ map, read, write }) {
     const at = indexOf(event.currentTarget);
     const all = read().points.map((point) => [...point]);
     const step = (event.shiftKey ? 10 : 1) * round(STEP * map.place.scale);
-    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const way = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 1], ArrowDown: [1, -1] }[event.key];
     if (way) {
-      all[at] = [0, 1].map((k) => tidy(Math.round(all[at][k] / step + way[k]) * step));
+      const [axis, sign] = way;
+      all[at][axis] = tidy(Math.round(all[at][axis] / step + sign) * step);
       finish(all, at);
     } else if (event.key === "Delete" || event.key === "Backspace") {
       if (all.length <= 2) return;

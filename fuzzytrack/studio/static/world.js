@@ -7,6 +7,7 @@ import { boundsOf, distance, makeMap } from "./map.js";
 import { shown } from "./numbers.js";
 import { pictureMenu, svgFile } from "./pictures.js";
 import { openScenario, saveScenario } from "./scenariofiles.js";
+import { samplingForm } from "./sampling.js";
 import { targetKind, truthOf } from "./scenario.js";
 import { radius, sensorForm, sensorLayer } from "./sensors.js";
 import { token } from "./colors.js";
@@ -36,6 +37,7 @@ export function mount(element, app) {
       map,
       read: () => ({ points: points(), between: drafted ? [] : middlesOf(store.now.scenario) }),
       write: writePoints,
+      draft: (all) => scenario.draft("set_waypoints", { points: all, ...target.timing() }),
     }),
   );
   map.picture.addEventListener("keydown", (event) => {
@@ -48,6 +50,7 @@ export function mount(element, app) {
   const facts = html("p", { class: "facts" });
   const target = targetForm(app, points, writePoints);
   const sensors = sensorForm(app);
+  const sampling = samplingForm(app);
   const text = textForm(app);
   const complaints = html("ul", { class: "complaints", "aria-live": "polite" });
 
@@ -69,7 +72,7 @@ export function mount(element, app) {
       "div",
       { class: "beside" },
       html("div", { class: "tall" }, map.element, facts),
-      html("div", { class: "side" }, complaints, target.element, sensors.element, text.element),
+      html("div", { class: "side" }, complaints, target.element, sensors.element, sampling.element, text.element),
     ),
   );
 
@@ -130,6 +133,7 @@ export function mount(element, app) {
     if (!now) return;
     target.show();
     sensors.show();
+    sampling.show();
     text.show();
     facts.textContent = factsOf(now);
     complaints.hidden = !now.complaints.length;

@@ -1,0 +1,152 @@
+"""The experiment side of the page in a real browser: scenario, runs, results, own data."""
+
+import re
+
+import pytest
+
+from fuzzytrack.testbed.montecarlo import monte_carlo
+
+playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
+expect = playwright.expect
+
+TRACKERS = [
+    "fixed:alpha=0.5377:beta=0.2018",
+    "chan-style",
+    "stiffness-damping",
+    "kalman-cv:sigma_v=0.0075",
+]
+
+
+@pytest.fixture
+def studio(browser_page):
+    """The page of a new session."""
+    page = browser_page
+    page.evaluate("sessionStorage.clear()")
+    page.reload()
+    expect(page.locator("#status")).to_contain_text("connected")
+    return page
+
+
+def view(page, name):
+    page.locator("#rail").get_by_role("button", name=name).click()
+
+
+def waypoint(page, number):
+    return page.get_by_role("button", name=f"Way-point {number}:")
+
+
+def coordinate(page, number, axis):
+    return page.get_by_label(f"Way-point {number}, {axis} in meters")
+
+
+def run(page, runs):
+    page.get_by_role("textbox", name="Runs").first.fill(str(runs))
+    page.get_by_role("textbox", name="Seed").fill("3")
+    page.keyboard.press("Control+Enter")
+
+
+def test_waypoints_are_drawn_dragged_inserted_typed_deleted_and_undone(studio):
+    view(studio, "World")
+    studio.get_by_role("button", name="Draw way-points").click()
+    map_box = studio.locator("#pane-world svg.map").bounding_box()
+    for k, (right, down) in enumerate(
+        [(0.2, 0.8), (0.3, 0.4), (0.5, 0.6), (0.7, 0.3), (0.85, 0.5)], 1
+    ):
+        studio.mouse.click(
+            map_box["x"] + right * map_box["width"], map_box["y"] + down * map_box["height"]
+        )
+        expect(studio.locator(".waypoint")).to_have_count(k)
+    studio.keyboard.press("Enter")
+    expect(studio.get_by_label("Maneuver")).to_have_value("waypoints")
+    rows = studio.locator("table.waypoints tbody tr")
+    expect(rows).to_have_count(5)
+
+    # By mouse: while it is dragged the numbers follow, and the drag is one step of undo.
+    before = coordinate(studio, 3, "x").input_value()
+    box = waypoint(studio, 3).locator(".knob").bounding_box()
+    studio.mouse.move(box["x"] + 6, box["y"] + 6)
+    studio.mouse.down()
+    studio.mouse.move(box["x"] + 40, box["y"] + 30)
+    studio.mouse.move(box["x"] + 66, box["y"] + 46)
+    expect(coordinate(studio, 3, "x")).not_to_have_value(before)
+    studio.mouse.up()
+    expect(waypoint(studio, 3)).to_be_focused()
+    studio.keyboard.press("Control+z")
+    expect(coordinate(studio, 3, "x")).to_have_value(before)
+
+    # By keys, and by numbers.
+    waypoint(studio, 3).focus()
+    studio.keyboard.press("ArrowRight")
+    expect(coordinate(studio, 3, "x")).not_to_have_value(before)
+    expect(waypoint(studio, 3)).to_be_focused()
+    studio.get_by_role("button", name="Insert a way-point after 3").first.focus()
+    studio.keyboard.press("Enter")
+    expect(rows).to_have_count(6)
+    expect(waypoint(studio, 4)).to_be_focused()
+    studio.keyboard.press("Delete")
+    expect(rows).to_have_count(5)
+    coordinate(studio, 2, "y").fill("1234.5")
+    studio.keyboard.press("Enter")
+    expect(waypoint(studio, 2)).to_have_attribute("aria-label", re.compile("y 1234.5 m"))
+
+
+def test_sensors_and_their_reach_are_shown_and_changed(studio):
+    view(studio, "World")
+    studio.get_by_role("button", name="Scenario turn").click()
+    studio.get_by_role("menuitem", name="llinas-m3-medium").click()
+    expect(studio.locator(".facts")).to_contain_text("8 of 20 positions within reach")
+    studio.get_by_label("Spacing").select_option("dense")
+    expect(studio.locator(".facts")).not_to_contain_text("8 of 20")
+    studio.get_by_role("textbox", name="Reach").fill("nonsense")
+    studio.keyboard.press("Enter")
+    expect(studio.get_by_role("textbox", name="Reach")).to_have_attribute("aria-invalid", "true")
+    studio.keyboard.press("Escape")
+    expect(studio.get_by_role("textbox", name="Reach")).to_have_value("1000")
+
+
+def test_trackers_run_and_the_table_has_the_numbers_of_the_testbed(studio):
+    view(studio, "Run")
+    run(studio, 20)
+    rows = studio.locator(".results-all .result-table tbody tr")
+    expect(rows).to_have_count(5, timeout=60_000)
+    expect(studio.locator("#pane-run [role=status]")).to_contain_text("20 runs in", timeout=60_000)
+    expected = monte_carlo("turn", TRACKERS, runs=20, seed=3)
+    for name, row in zip(TRACKERS, expected.table(), strict=True):
+        shown = rows.filter(has=studio.locator(f'button[title*="{name} in"]'))
+        for key in ("predicted_rmse", "filtered_rmse", "predicted_variance", "peak"):
+            cell = shown.locator(f'[data-key="{key}"]')
+            assert float(cell.get_attribute("data-value")) == row[key]
+    studio.get_by_role("button", name="Side by side").click()
+    expect(studio.locator(".difference")).to_contain_text("paired over 20 runs")
+
+    # One run, scan by scan.
+    studio.get_by_role("button", name="One run").click()
+    slider = studio.get_by_role("slider", name="Scan")
+    slider.focus()
+    for _ in range(5):
+        studio.keyboard.press("ArrowRight")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("scan 5 of 19"))
+    expect(studio.locator(".fired-rules").first).to_contain_text("if E is")
+
+    for kind in ("SVG", "PNG"):
+        studio.get_by_role("button", name="Save a picture of innovation").click()
+        with studio.expect_download() as download:
+            studio.get_by_role("menuitem", name=kind).click()
+        content = download.value.path().read_bytes()
+        assert content.startswith({"SVG": b"<svg", "PNG": b"\x89PNG"}[kind])
+
+    # The page comes back as it was.
+    studio.reload()
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("scan 0 of 19"))
+    studio.get_by_role("button", name="All trackers").click()
+    expect(rows).to_have_count(5)
+
+
+def test_a_run_is_canceled_and_another_one_can_begin(studio):
+    view(studio, "Run")
+    run(studio, 100_000)
+    status = studio.locator("#pane-run [role=status]")
+    expect(status).to_contain_text("left", timeout=60_000)
+    studio.get_by_role("button", name="Cancel").first.click()
+    expect(status).to_contain_text("Canceled after")
+    expect(studio.locator("#pane-run").get_by_role("button", name="Run")).to_be_visible()
