@@ -1,7 +1,7 @@
 /* A chart of lines over one axis: bands, bars and dots, a cursor that reads values, SVG throughout. */
 
 import { html, svg } from "./elements.js";
-import { fillClass, lineStyle, pathOf, swatch } from "./lines.js";
+import { colorClass, fillClass, lineStyle, pathOf, swatch } from "./lines.js";
 import { shown, ticks } from "./numbers.js";
 
 const MARGIN = { left: 62, right: 12, top: 10, bottom: 38 };
@@ -224,7 +224,7 @@ function strokes(place, { kind = "line", index, x, y }) {
   if (kind === "dots") {
     return x.flatMap((value, k) =>
       Number.isFinite(y[k])
-        ? [svg("circle", { class: `dot c${index % 6}`, cx: place.x(value), cy: place.y(y[k]), r: 2 })]
+        ? [svg("circle", { class: `dot ${colorClass(index)}`, cx: place.x(value), cy: place.y(y[k]), r: 2 })]
         : [],
     );
   }

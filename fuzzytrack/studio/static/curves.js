@@ -38,12 +38,12 @@ function margin(value, error, times) {
 /** The first run on a map, of the trackers that are shown. */
 export function trajectoriesOf({ results, hidden }) {
   if (!results) return {};
-  const { truth, plots, seen, trackers } = results.sample;
+  const { time, truth, plots, seen, trackers } = results.sample;
   const coasted = seen.map((each) => !each);
   const lines = namesOf(results).flatMap((name, index) =>
-    hidden.includes(name) || !trackers[name] ? [] : [{ index, points: trackers[name].filtered, coasted }],
+    hidden.includes(name) || !trackers[name] ? [] : [{ name, index, points: trackers[name].filtered, coasted }],
   );
-  return { truth, plots, lines };
+  return { time, truth, plots, lines };
 }
 
 /** The gain of the first axis; a gain may be a number for all axes. */

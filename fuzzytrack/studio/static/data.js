@@ -4,11 +4,10 @@ import { makeChart } from "./chart.js";
 import { html, select } from "./elements.js";
 import { action, group, numberField } from "./fields.js";
 import { figure } from "./figure.js";
-import { boundsOf, makeMap } from "./map.js";
 import { shown } from "./numbers.js";
 import { trackerList } from "./pick.js";
 import { swatch } from "./lines.js";
-import { trajectoryLayer } from "./trajectories.js";
+import { makeTrackPicture } from "./trackpicture.js";
 
 export const title = "Own data";
 // The server takes messages of up to 1 MiB; larger files are opened from the folder.
@@ -38,11 +37,7 @@ export function mount(element, app) {
   const axis = select("Axis", [], "", (value) => store.set({ axisShown: Number(value) }));
   const lines = () => Object.keys(shownTrack(store.now).trackers).map((name, index) => [name, index]);
   const innovations = makeChart();
-  const map = makeMap({
-    name: "Recorded tracks: arrow keys move the map, + and − zoom, 0 shows all",
-    bounds: () => boundsOf((shownTrack(store.now)?.plots ?? []).map(([x, y = 0]) => [x, y])),
-  });
-  map.add(trajectoryLayer(() => layerOf(store.now)));
+  const picture = makeTrackPicture("Recorded track", () => layerOf(store.now));
   const body = html(
     "div",
     { class: "tall", hidden: true },
@@ -52,7 +47,7 @@ export function mount(element, app) {
     html(
       "div",
       { class: "pictures" },
-      figure(app, "Tracks", "data-tracks", map, lines, [which]),
+      figure(app, "Tracks", "data-tracks", picture, lines, [which]),
       figure(app, "Innovations", "data-innovations", innovations, lines, [axis]),
     ),
   );
@@ -134,8 +129,9 @@ export function mount(element, app) {
     axis.replaceChildren(...tracked.axes.map((name, k) => html("option", { value: k }, name)));
     axis.value = String(axisShown);
     innovations.show(innovationsOf(now));
+    picture.redraw();
   });
-  store.follow(["tracked", "trackShown"], () => map.fit());
+  store.follow(["tracked", "trackShown"], () => picture.fit());
 }
 
 function shownTrack({ tracked, trackShown }) {
@@ -146,8 +142,10 @@ function layerOf(now) {
   const track = shownTrack(now);
   if (!track) return {};
   const coasted = track.plots.map((point) => point.some((value) => value === null));
-  const lines = Object.values(track.trackers).map(({ filtered }, index) => ({ index, points: filtered, coasted }));
-  return { truth: track.truth ?? [], plots: track.plots, lines };
+  const lines = Object.entries(track.trackers).map(([name, { filtered }], index) => ({
+    name, index, points: filtered, coasted,
+  }));
+  return { time: track.time, truth: track.truth ?? [], plots: track.plots, lines };
 }
 
 function innovationsOf(now) {

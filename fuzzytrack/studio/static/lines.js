@@ -5,17 +5,22 @@ import { html, svg } from "./elements.js";
 export const COLORS = 6;
 const DASHES = [null, "6 3", "2 2.5"];
 
-/** Attributes of the line of tracker number `index`. */
+/** Class of the color of tracker number `index`; that of the truth and of plots is -1. */
+export function colorClass(index) {
+  return index < 0 ? "reference" : `c${index % COLORS}`;
+}
+
+/** Attributes of the line of a tracker. */
 export function lineStyle(index) {
   return {
-    class: `line c${index % COLORS}`,
-    "stroke-dasharray": DASHES[Math.floor(index / COLORS) % DASHES.length],
+    class: `line ${colorClass(index)}`,
+    "stroke-dasharray": DASHES[Math.floor(Math.max(0, index) / COLORS) % DASHES.length],
   };
 }
 
 /** Class of what is filled in the color of a tracker. */
 export function fillClass(index) {
-  return `area c${index % COLORS}`;
+  return `area ${colorClass(index)}`;
 }
 
 /** A piece of the line of a tracker, for tables and legends. */

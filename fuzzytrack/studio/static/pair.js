@@ -5,9 +5,8 @@ import { errorsOf, finite, namesOf, trajectoriesOf } from "./curves.js";
 import { html, select } from "./elements.js";
 import { figure } from "./figure.js";
 import { keyOf } from "./lines.js";
-import { boundsOf, makeMap } from "./map.js";
 import { shown } from "./numbers.js";
-import { trajectoryLayer } from "./trajectories.js";
+import { makeTrackPicture } from "./trackpicture.js";
 
 export function mount(element, app) {
   const { store, socket } = app;
@@ -20,12 +19,8 @@ export function mount(element, app) {
   const errors = makeChart();
   const difference = makeChart();
   const maps = [0, 1].map((which) => {
-    const map = makeMap({
-      name: `Trajectory of the ${["first", "second"][which]} design`,
-      bounds: () => boundsOf((store.now.results?.sample.truth ?? []).map(([x, y = 0]) => [x, y])),
-    });
-    map.add(trajectoryLayer(() => lineOf(store.now, store.now.pair[which])));
-    return map;
+    const name = `Trajectory of the ${["first", "second"][which]} design`;
+    return makeTrackPicture(name, () => lineOf(store.now, store.now.pair[which]));
   });
   const headings = [html("span", {}), html("span", {})];
   const body = html(

@@ -5,12 +5,11 @@ import { makeChart } from "./chart.js";
 import { errorsOf, finite, first, linesOf, namesOf, trajectoriesOf } from "./curves.js";
 import { figure } from "./figure.js";
 import { keepText } from "./files.js";
-import { boundsOf, makeMap } from "./map.js";
 import { menu } from "./menu.js";
 import * as pair from "./pair.js";
 import { download } from "./pictures.js";
 import { resultTable } from "./resulttable.js";
-import { trajectoryLayer } from "./trajectories.js";
+import { makeTrackPicture } from "./trackpicture.js";
 import * as walk from "./walk.js";
 
 export const title = "Results";
@@ -84,11 +83,7 @@ function mountAll(element, app) {
   const errors = makeChart();
   const distribution = makeChart();
   const gains = makeChart();
-  const map = makeMap({
-    name: "Trajectories of the first run: arrow keys move the map, + and − zoom, 0 shows all",
-    bounds: () => boundsOf(placesOf(store.now.results)),
-  });
-  map.add(trajectoryLayer(() => trajectoriesOf(store.now)));
+  const tracks = makeTrackPicture("Trajectories of the first run", () => trajectoriesOf(store.now));
 
   element.append(
     table,
@@ -96,7 +91,7 @@ function mountAll(element, app) {
       "div",
       { class: "pictures" },
       figure(app, "Error over time", "errors", errors, lines, [quantity.element, band.element]),
-      figure(app, "Trajectories", "trajectories", map, lines, [
+      figure(app, "Trajectories", "trajectories", tracks, lines, [
         html("span", { class: "muted" }, "run 0; × plots, □ coasted"),
       ]),
       figure(app, "Error distribution", "distribution", distribution, lines),
@@ -135,14 +130,14 @@ function mountAll(element, app) {
     errors.show(errorsOf(now));
     distribution.show(distributionOf(now));
     gains.show(gainsOf(now, shownGain));
-    map.redraw();
+    tracks.redraw();
   }
 
   store.follow(["results", "hidden", "sorting"], drawTable);
   store.follow(["results", "hidden", "quantity", "band", "gain", "scheme", "resultsTab", "view"], draw);
   let scenario = null;
   store.follow(["results"], ({ results }) => {
-    if (results && scenario !== results.scenario) map.fit();
+    if (results && scenario !== results.scenario) tracks.fit();
     scenario = results?.scenario;
   });
 }
@@ -177,12 +172,6 @@ function gainsOf({ results, hidden }, gain) {
     y: { label: `gain ${sign}` },
     series,
   };
-}
-
-function placesOf(results) {
-  if (!results) return [];
-  const { truth, plots } = results.sample;
-  return [...truth, ...plots].map(([x, y = 0]) => [x, y]);
 }
 
 function focusOf(table) {

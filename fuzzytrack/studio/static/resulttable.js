@@ -4,7 +4,7 @@ import { html } from "./elements.js";
 import { swatch } from "./lines.js";
 import { shown } from "./numbers.js";
 
-// Significant digits of a value and of its standard error.
+// Significant digits of a value without a standard error, and of a standard error.
 const [DIGITS, DIGITS_OF_ERROR] = [4, 2];
 // Key of the row, heading, unit, what it says. With a standard error if `${key}_se` is there.
 const COLUMNS = [
@@ -111,6 +111,7 @@ function cellOf(row, key) {
   const value = row[key];
   if (!Number.isFinite(value)) return html("td", {}, "–");
   const error = row[`${key}_se`];
+  const known = Number.isFinite(error) && error > 0;
   // The whole number, as the command line writes it, for those who compare.
   const interval = key === "change" ? `, 95 % interval ${row.change_low} to ${row.change_high}` : "";
   const title = `${Number.isFinite(error) ? `${value} ± ${error}` : value}${interval}`;
@@ -123,17 +124,23 @@ function cellOf(row, key) {
   return html(
     "td",
     { title, "data-key": key, "data-value": value },
-    key === "operations" ? shown(value, DIGITS) : even(value, DIGITS),
-    Number.isFinite(error) ? html("span", { class: "se" }, ` ± ${even(error, DIGITS_OF_ERROR)}`) : null,
+    key === "operations" ? shown(value, DIGITS) : known ? withPlaces(value, placesOf(error, DIGITS_OF_ERROR)) : even(value, DIGITS),
+    known ? html("span", { class: "se" }, ` ± ${even(error, DIGITS_OF_ERROR)}`) : null,
     beside ? html("span", { class: "se" }, beside()) : null,
   );
 }
 
 /** A number with its trailing zeros, so that a column is aligned. */
 function even(value, digits) {
-  if (value === 0) return "0";
-  const places = Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value))));
-  return value.toFixed(Math.min(places, 12)).replace("-", "−");
+  return value === 0 ? "0" : withPlaces(value, placesOf(value, digits));
+}
+
+function placesOf(value, digits) {
+  return Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
+}
+
+function withPlaces(value, places) {
+  return value.toFixed(places).replace("-", "−");
 }
 
 // What is not known comes last, whichever way it is sorted.

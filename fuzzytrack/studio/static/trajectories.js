@@ -1,7 +1,7 @@
 /* Tracks on a map: truth, plots, estimates of trackers, and the scans without a plot. */
 
 import { svg } from "./elements.js";
-import { COLORS, lineStyle, pathOf } from "./lines.js";
+import { colorClass, lineStyle, pathOf } from "./lines.js";
 
 const MOST_PLOTS = 3000;
 
@@ -26,7 +26,7 @@ export function trajectoryLayer(read) {
         const squares = at.filter((point, k) => coasted[k] && known(point[0])).map(([x, y]) => square(x, y));
         return [
           svg("path", { ...lineStyle(index), d: pathOf(at) }),
-          svg("path", { class: `coasted c${index % COLORS}`, d: squares.join("") }),
+          svg("path", { class: `coasted ${colorClass(index)}`, d: squares.join("") }),
         ];
       }),
     );

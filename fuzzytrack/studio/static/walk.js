@@ -6,9 +6,8 @@ import { html, select, svg } from "./elements.js";
 import { numberField } from "./fields.js";
 import { figure } from "./figure.js";
 import { keyOf } from "./lines.js";
-import { boundsOf, makeMap } from "./map.js";
 import { shown } from "./numbers.js";
-import { trajectoryLayer } from "./trajectories.js";
+import { makeTrackPicture } from "./trackpicture.js";
 
 const AXES = ["x", "y", "z"];
 const PLAY_MS = 180;
@@ -24,19 +23,15 @@ export function mount(element, app) {
   const rules = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Rules that fire" });
   const innovations = makeChart((value) => goTo(value));
   const gains = makeChart((value) => goTo(value));
-  const map = makeMap({
-    name: "The track up to the scan of the slider",
-    bounds: () => boundsOf([...(walk?.truth ?? []), ...(walk?.plots ?? [])].map(([x, y = 0]) => [x, y])),
-  });
-  map.add(trajectoryLayer(soFar));
-  map.add(markLayer(() => walk, () => at));
+  const marks = markLayer(() => walk, () => at);
+  const track = makeTrackPicture("The track up to the scan of the slider", soFar, [marks], () => walk.t[at]);
   const innovationKey = html("span", {});
   const gainKey = html("span", {});
   const failed = html("p", { class: "note" });
   const body = html(
     "div",
     { class: "pictures" },
-    figure(app, "Track", "walk-track", map, () => []),
+    figure(app, "Track", "walk-track", track, () => []),
     html("div", { class: "picture" }, html("h3", {}, "At this scan"), plot, rules),
     figure(app, "Innovation", "walk-innovation", innovations, () => linesIn(innovationsOf(walk, null)), [innovationKey]),
     figure(app, "Gains", "walk-gains", gains, () => linesIn(gainsOf(walk, null)), [gainKey]),
@@ -83,7 +78,7 @@ export function mount(element, app) {
       body.hidden = false;
       slider.max = String(walk.t.length - 1);
       at = Math.min(at, walk.t.length - 1);
-      map.fit();
+      track.fit();
       go(at);
     } catch (error) {
       failed.textContent = error.message;
@@ -108,7 +103,7 @@ export function mount(element, app) {
     }
     plot.replaceChildren(...factsOf(walk, scan));
     rules.replaceChildren(...rulesOf(walk.inputs?.[scan] ?? []));
-    map.redraw();
+    track.redraw();
   }
 
   function goTo(time) {
@@ -120,7 +115,8 @@ export function mount(element, app) {
   function soFar() {
     if (!walk) return {};
     const coasted = walk.seen.map((seen) => !seen);
-    return { truth: walk.truth ?? [], plots: walk.plots, upto: at + 1, lines: [{ index: Math.max(0, tracker.selectedIndex), points: walk.estimates, coasted }] };
+    const line = { name: tracker.value, index: Math.max(0, tracker.selectedIndex), points: walk.estimates, coasted };
+    return { time: walk.t, truth: walk.truth ?? [], plots: walk.plots, upto: at + 1, lines: [line] };
   }
 
   function toggle() {

@@ -1,5 +1,6 @@
 /* The view of the scenario: the target and the sensors on a map, and their numbers beside it. */
 
+import { makeChart } from "./chart.js";
 import { html, svg } from "./elements.js";
 import { group } from "./fields.js";
 import { pathOf } from "./lines.js";
@@ -30,6 +31,7 @@ export function mount(element, app) {
     clicked: addPoint,
   });
   const track = svg("g", {});
+  const overTime = makeChart();
   map.add(sensorLayer(() => store.now.scenario));
   map.add({ element: track, draw: drawTrack });
   map.add(
@@ -65,13 +67,13 @@ export function mount(element, app) {
       html("span", { class: "space" }),
       draw,
       pictureMenu("the map", () => `${store.now.scenario.name}-map`, () =>
-        svgFile(map.picture, token("--panel")),
+        svgFile((map.element.hidden ? overTime : map).picture, token("--panel")),
       ),
     ),
     html(
       "div",
       { class: "beside" },
-      html("div", { class: "tall" }, map.element, facts),
+      html("div", { class: "tall" }, map.element, overTime.element, facts),
       html("div", { class: "side" }, complaints, target.element, sensors.element, sampling.element, text.element),
     ),
   );
@@ -86,6 +88,21 @@ export function mount(element, app) {
     target.show();
     if (next.length < 2) return Promise.resolve(false);
     return scenario.change("set_waypoints", { points: next, ...target.timing() });
+  }
+
+  /** A target with one axis has no map; a path that is drawn will have two. */
+  function showAxes() {
+    const { axes, time, truth } = store.now.scenario.scenario;
+    const flat = axes === 1 && drafted === null;
+    map.element.hidden = flat;
+    overTime.element.hidden = !flat;
+    if (!flat) return;
+    overTime.show({
+      name: "Position of the target over time",
+      x: { label: "time (s)" },
+      y: { label: "position (m)" },
+      series: [{ name: "truth", index: 0, x: time, y: truth.map(([x]) => x) }],
+    });
   }
 
   function begin() {
@@ -109,6 +126,7 @@ export function mount(element, app) {
     draw.title = on ? "End the path (Enter)" : "Draw a new path: click its way-points on the map";
     map.element.classList.toggle("drawing", on);
     target.show();
+    if (store.now.scenario) showAxes();
     map.redraw();
   }
 
@@ -140,6 +158,7 @@ export function mount(element, app) {
     complaints.replaceChildren(
       ...now.complaints.map(({ message, line }) => html("li", {}, line ? `Line ${line}: ${message}` : message)),
     );
+    showAxes();
     // Another scenario is shown whole; a change of this one leaves the map where it is.
     if (name !== now.name) map.fit();
     else map.redraw();
