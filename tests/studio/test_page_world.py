@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -150,3 +151,53 @@ def test_a_run_is_canceled_and_another_one_can_begin(studio):
     studio.get_by_role("button", name="Cancel").first.click()
     expect(status).to_contain_text("Canceled after")
     expect(studio.locator("#pane-run").get_by_role("button", name="Run")).to_be_visible()
+
+
+@pytest.fixture(scope="module")
+def csv():
+    """Two tracks of a target that turns, with the truth beside the plots."""
+    random = np.random.default_rng(4)
+    lines = ["time,id,x,y,true_x,true_y"]
+    for name in "ab":
+        for k in range(60):
+            true = 900 * np.cos(k / 15), 900 * np.sin(k / 15 + ord(name))
+            numbers = map(repr, map(float, [*random.normal(true, 10), *true]))
+            lines.append(f"{k},{name},{','.join(numbers)}")
+    return "\n".join(lines) + "\n"
+
+
+def drop(page, name, text):
+    transfer = page.evaluate_handle(
+        """([name, text]) => {
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([text], name, {type: "text/csv"}));
+            return transfer;
+        }""",
+        [name, text],
+    )
+    page.dispatch_event("#pane-data .drop", "drop", {"dataTransfer": transfer})
+
+
+def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv):
+    view(studio, "Data")
+    drop(studio, "mine.csv", csv)
+    # Two tracks without the column that tells them apart: the page says so, and takes the name.
+    expect(studio.get_by_role("alert")).to_contain_text("mine.csv: row 62")
+    studio.get_by_role("textbox", name="Track column").fill("id")
+    studio.keyboard.press("Enter")
+    rows = studio.locator("#pane-data .result-table tbody tr")
+    expect(rows).to_have_count(5, timeout=60_000)
+    expect(studio.locator("#pane-data")).to_contain_text("120 plots")
+    studio.get_by_role("combobox", name="Track", exact=True).select_option("1")
+
+    studio.get_by_role("button", name="the recording").click()
+    for label, text in [("Numbers to tune", "outputs"), ("Trials", "3"), ("Folds", "2")]:
+        studio.get_by_role("textbox", name=label).fill(text)
+        studio.keyboard.press("Tab")
+    studio.get_by_role("button", name="Tune", exact=True).click()
+    expect(studio.locator(".tuned")).to_contain_text("worth it", timeout=90_000, ignore_case=True)
+    studio.get_by_role("button", name="Open in the editor").click()
+    expect(studio.locator("#bar")).to_contain_text("not saved")
+    expect(studio.locator("#pane-rules")).to_be_visible()
+    studio.keyboard.press("Control+z")
+    expect(studio.locator("#bar")).to_contain_text("as shipped")

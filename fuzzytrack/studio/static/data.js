@@ -1,33 +1,21 @@
-/* The pane of own data: a recording is dropped or chosen, tracked, compared, and tuned on. */
+/* The pane of own data: tracks of a recording, innovations, and how the trackers compare on it. */
 
 import { makeChart } from "./chart.js";
 import { html, select } from "./elements.js";
-import { action, group, numberField } from "./fields.js";
+import { action, group } from "./fields.js";
 import { figure } from "./figure.js";
-import { shown } from "./numbers.js";
-import { trackerList } from "./pick.js";
 import { swatch } from "./lines.js";
+import { even, shown } from "./numbers.js";
+import { chosenTrackers, trackerList } from "./pick.js";
+import { columnsOf, recordingForm } from "./recording.js";
 import { makeTrackPicture } from "./trackpicture.js";
 
 export const title = "Own data";
-// The server takes messages of up to 1 MiB; larger files are opened from the folder.
-const MOST_BYTES = 1_000_000;
+const AXES = ["x", "y", "z"];
 
 export function mount(element, app) {
   const { store, socket, say } = app;
-  const chosen = select("Recording", [], "", (name) => store.set({ recording: name || null }));
-  const input = html("input", { type: "file", accept: ".csv,.txt,text/csv", class: "unseen", tabindex: -1, "aria-hidden": "true", onchange: () => take(input.files[0]) });
-  const drop = html(
-    "button",
-    { type: "button", class: "drop", onclick: () => input.click() },
-    "Drop a CSV file here, or press to choose one",
-  );
-  const sigma = numberField("Plot σ", "m", (value) => store.set({ sigma: value }), {
-    least: 0,
-    title: "Standard deviation of the plots; found from the plots, or their columns, if it is left empty",
-  });
-  sigma.input.placeholder = "auto";
-  const automatic = html("button", { type: "button", class: "quiet", onclick: () => store.set({ sigma: null }) }, "auto");
+  const recording = recordingForm(app, run);
   const picks = trackerList(app);
   const compare = action("Track and compare", run, { class: "primary" });
   const facts = html("p", { class: "muted" });
@@ -40,21 +28,21 @@ export function mount(element, app) {
   const picture = makeTrackPicture("Recorded track", () => layerOf(store.now));
   const body = html(
     "div",
-    { class: "tall", hidden: true },
+    { class: "filled" },
     facts,
     notes,
     table,
     html(
       "div",
       { class: "pictures" },
-      figure(app, "Tracks", "data-tracks", picture, lines, [which]),
+      figure(app, "Track", "data-track", picture, lines, [which]),
       figure(app, "Innovations", "data-innovations", innovations, lines, [axis]),
     ),
   );
   const empty = html(
     "div",
     { class: "nothing" },
-    html("p", {}, "Drop a CSV file with columns of time and position (t, x, y; or as `fuzzytrack track` takes them), or choose one in the folder."),
+    html("p", {}, "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared."),
   );
 
   element.append(
@@ -63,70 +51,36 @@ export function mount(element, app) {
       "div",
       { class: "beside" },
       html("div", { class: "tall" }, empty, body),
-      html(
-        "div",
-        { class: "side" },
-        group("Recording", drop, input, html("label", { class: "field" }, html("span", { class: "label" }, "File"), chosen), html("div", { class: "with-button" }, sigma.element, automatic)),
-        group("Trackers", picks.element),
-      ),
+      html("div", { class: "side" }, recording.element, group("Trackers", picks.element)),
     ),
   );
-
-  for (const kind of ["dragover", "dragleave", "drop"]) {
-    element.addEventListener(kind, (event) => {
-      event.preventDefault();
-      drop.classList.toggle("over", kind === "dragover");
-      if (kind === "drop") take(event.dataTransfer.files[0]);
-    });
-  }
-
-  async function take(file) {
-    input.value = "";
-    if (!file) return;
-    if (file.size > MOST_BYTES) {
-      say(`${file.name} has ${shown(file.size / 1e6, 3)} MB; at most 1 MB can be dropped. Put it into the folder and choose it.`, "error");
-      return;
-    }
-    try {
-      const found = await socket.send("upload", { name: file.name, text: await file.text() });
-      store.set({ uploads: [...new Set([...store.now.uploads, found.name])], recording: found.name });
-      await run();
-    } catch (error) {
-      say(error.message, "error");
-    }
-  }
+  for (const kind of ["dragover", "dragleave", "drop"]) element.addEventListener(kind, recording.dragged);
 
   async function run() {
-    const { recording, trackers, sigma: given } = store.now;
-    const texts = trackers.filter(({ on }) => on).map(({ text }) => text);
-    if (!recording) return say("There is no recording: drop a CSV file, or choose one in the folder.", "error");
-    if (!texts.length) return say("No tracker is chosen: check one in the list, or add one.", "error");
+    const { recording: name } = store.now;
+    const trackers = chosenTrackers(store.now);
+    if (!name) return say("There is no recording: drop a CSV file, or choose one in the folder.", "error");
+    if (!trackers.length) return say("No tracker is chosen: check one in the list, or add one.", "error");
     try {
-      const tracked = await socket.send("track", { name: recording, trackers: texts, sigma: given });
+      const tracked = await socket.send("track", { name, trackers, ...columnsOf(store.now) });
       store.set({ tracked, trackShown: 0, axisShown: 0 });
-      say(`${recording}: ${tracked.plots} plots.`);
+      say(`${name}: ${tracked.plots} plots are tracked.`);
     } catch (error) {
       say(error.message, "error");
     }
   }
 
-  store.follow(["files", "uploads", "recording"], ({ files, uploads, recording }) => {
-    const names = [...new Set([...uploads, ...files.filter(({ kind }) => kind === "recording").map(({ name }) => name)])];
-    chosen.replaceChildren(html("option", { value: "" }, "none"), ...names.map((name) => html("option", { value: name }, name)));
-    chosen.value = names.includes(recording) ? recording : "";
-  });
-  store.follow(["sigma"], ({ sigma: given }) => sigma.show(given));
   store.follow(["tracked", "trackShown", "axisShown", "scheme", "view"], (now) => {
     const { tracked, trackShown, axisShown } = now;
     body.hidden = !tracked;
     empty.hidden = Boolean(tracked);
     if (!tracked) return;
     facts.textContent = factsOf(tracked);
-    notes.replaceChildren(...(tracked.notes ?? []).map((text) => html("li", {}, text)));
+    notes.replaceChildren(...tracked.notes.map((text) => html("li", {}, text)));
     table.replaceChildren(comparisonTable(tracked));
-    which.replaceChildren(...tracked.tracks.map(({ id }, k) => html("option", { value: k }, `track ${id}`)));
+    which.replaceChildren(...tracked.tracks.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")));
     which.value = String(trackShown);
-    axis.replaceChildren(...tracked.axes.map((name, k) => html("option", { value: k }, name)));
+    axis.replaceChildren(...AXES.slice(0, tracked.axes).map((name, k) => html("option", { value: k }, name)));
     axis.value = String(axisShown);
     innovations.show(innovationsOf(now));
     picture.redraw();
@@ -164,9 +118,11 @@ function innovationsOf(now) {
   };
 }
 
-function factsOf({ name, plots, tracks, sigma }) {
-  const words = [name, `${shown(plots, 7)} plots`, tracks.length > 1 ? `${tracks.length} tracks` : "1 track"];
-  if (sigma !== null && sigma !== undefined) words.push(`σ ${[sigma].flat().map((value) => shown(value, 4)).join(", ")} m`);
+function factsOf({ name, plots, tracks, sigma, comparison, shown: drawn }) {
+  const words = [name, `${shown(plots, 7)} plots`, tracks.length > 1 ? `${drawn} tracks drawn` : "1 track"];
+  if (sigma) words.push(`σ ${[sigma].flat().map((value) => shown(value, 3)).join(", ")} m`);
+  words.push(`${shown(comparison.scored, 7)} innovations compared`);
+  if (Number.isFinite(comparison.measured_rmse)) words.push(`RMSE of the plots ${shown(comparison.measured_rmse, 4)} m`);
   return words.join(" · ");
 }
 
@@ -182,7 +138,7 @@ function comparisonTable({ comparison: { columns, rows } }) {
         "tr",
         {},
         html("th", { scope: "col" }, "Tracker"),
-        ...columns.map(([, text, unit]) => html("th", { scope: "col" }, text, html("small", {}, unit ?? ""))),
+        ...columns.map(([, text, unit]) => html("th", { scope: "col" }, text, html("small", {}, unit))),
       ),
     ),
     html(
@@ -191,8 +147,12 @@ function comparisonTable({ comparison: { columns, rows } }) {
       rows.map((row, index) =>
         html(
           "tr",
-          {},
-          html("th", { scope: "row" }, html("div", { class: "named" }, swatch(index), row.name)),
+          { class: row.mark },
+          html(
+            "th",
+            { scope: "row" },
+            html("div", {}, swatch(index), row.name, row.mark ? html("span", { class: "mark" }, row.mark) : null),
+          ),
           ...columns.map(([key]) => cellOf(row, key)),
         ),
       ),
@@ -202,12 +162,12 @@ function comparisonTable({ comparison: { columns, rows } }) {
 
 function cellOf(row, key) {
   const value = row[key];
-  if (typeof value !== "number") return html("td", {}, value ?? "–");
-  const error = row[`${key}_se`];
+  if (typeof value !== "number") return html("td", {}, "–");
+  const [low, high] = [row[`${key}_low`], row[`${key}_high`]];
   return html(
     "td",
     { title: String(value), "data-key": key, "data-value": value },
-    shown(value, 4),
-    Number.isFinite(error) ? html("span", { class: "se" }, ` ± ${shown(error, 2)}`) : null,
+    even(value, 4),
+    Number.isFinite(low) ? html("span", { class: "se" }, ` [${shown(low, 3)}, ${shown(high, 3)}]`) : null,
   );
 }

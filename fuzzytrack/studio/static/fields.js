@@ -5,16 +5,17 @@ import { shown, typed } from "./numbers.js";
 
 let made = 0;
 
-/** A number; `change(value)` hears of a new one. `show(value)` shows one. */
-export function numberField(label, unit, change, { least = -Infinity, whole = false, title = "" } = {}) {
+/** A number; `change(value)` hears of a new one, null if the field may be `empty`. `show(value)` shows one. */
+export function numberField(label, unit, change, { least = -Infinity, whole = false, title = "", empty = false } = {}) {
   const id = `field-${(made += 1)}`;
   const input = html("input", { id, type: "text", class: "number", inputmode: "decimal", autocomplete: "off", title });
   let current = null;
 
   function leave() {
     if (input.value === written(current)) return;
-    const value = typed(input.value);
-    const wrong = !Number.isFinite(value) || value < least || (whole && !Number.isInteger(value));
+    const none = empty && input.value.trim() === "";
+    const value = none ? null : typed(input.value);
+    const wrong = !none && (!Number.isFinite(value) || value < least || (whole && !Number.isInteger(value)));
     input.setAttribute("aria-invalid", String(wrong));
     if (wrong) return;
     current = value;
@@ -53,6 +54,22 @@ export function numberField(label, unit, change, { least = -Infinity, whole = fa
   }
 
   return { element, input, show, name };
+}
+
+/** A text; `change(text)` hears of a new one. */
+export function textField(label, placeholder, change, title = "") {
+  const input = html("input", {
+    type: "text",
+    placeholder,
+    title,
+    spellcheck: "false",
+    autocomplete: "off",
+    onchange: () => change(input.value.trim()),
+  });
+  const show = (text) => {
+    if (document.activeElement !== input) input.value = text ?? "";
+  };
+  return { element: html("label", { class: "field" }, html("span", { class: "label" }, label), input), show };
 }
 
 /** A group of fields under a heading. */

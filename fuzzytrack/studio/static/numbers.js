@@ -7,6 +7,21 @@ export function shown(value, digits = 4) {
   return text.replace("-", "−");
 }
 
+/** A number with all its significant digits, trailing zeros too, so that a column is aligned. */
+export function even(value, digits) {
+  return value === 0 ? "0" : withPlaces(value, placesOf(value, digits));
+}
+
+/** Decimal places with which a number has so many significant digits. */
+export function placesOf(value, digits) {
+  return Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
+}
+
+/** A number with so many decimal places and a true minus sign. */
+export function withPlaces(value, places) {
+  return value.toFixed(places).replace("-", "−");
+}
+
 /** A typed number; a decimal comma and the true minus sign are taken too. NaN if it is none. */
 export function typed(text) {
   const plain = text.trim().replace("−", "-").replace(",", ".");

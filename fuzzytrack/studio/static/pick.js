@@ -17,6 +17,11 @@ function joined(name, parameters) {
   return [name, ...parameters.filter(([, value]) => value !== "").map((pair) => pair.join("="))].join(":");
 }
 
+/** Texts of the trackers that are checked. */
+export function chosenTrackers({ trackers }) {
+  return trackers.filter(({ on }) => on).map(({ text }) => text);
+}
+
 /** The list; `store.trackers` is [{text, on}]. */
 export function trackerList({ store }) {
   const rows = html("ul", { class: "picks" });

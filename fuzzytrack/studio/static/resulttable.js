@@ -2,7 +2,7 @@
 
 import { html } from "./elements.js";
 import { swatch } from "./lines.js";
-import { shown } from "./numbers.js";
+import { even, placesOf, shown, withPlaces } from "./numbers.js";
 
 // Significant digits of a value without a standard error, and of a standard error.
 const [DIGITS, DIGITS_OF_ERROR] = [4, 2];
@@ -128,19 +128,6 @@ function cellOf(row, key) {
     known ? html("span", { class: "se" }, ` ± ${even(error, DIGITS_OF_ERROR)}`) : null,
     beside ? html("span", { class: "se" }, beside()) : null,
   );
-}
-
-/** A number with its trailing zeros, so that a column is aligned. */
-function even(value, digits) {
-  return value === 0 ? "0" : withPlaces(value, placesOf(value, digits));
-}
-
-function placesOf(value, digits) {
-  return Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
-}
-
-function withPlaces(value, places) {
-  return value.toFixed(places).replace("-", "−");
 }
 
 // What is not known comes last, whichever way it is sorted.

@@ -2,7 +2,7 @@
 
 import { html } from "./elements.js";
 import { action, group, numberField } from "./fields.js";
-import { trackerList } from "./pick.js";
+import { chosenTrackers, trackerList } from "./pick.js";
 
 export const title = "Run";
 
@@ -39,9 +39,9 @@ export function mount(element, app) {
   });
 
   async function run() {
-    const { trackers, wantedRuns, seed: wanted, job } = store.now;
+    const { wantedRuns, seed: wanted, job } = store.now;
     if (job?.state === "running") return;
-    const texts = trackers.filter(({ on }) => on).map(({ text }) => text);
+    const texts = chosenTrackers(store.now);
     if (!texts.length) {
       say("No tracker is chosen: check one in the list, or add one.", "error");
       return;
@@ -97,12 +97,11 @@ export function mount(element, app) {
 
 /** A job in words. */
 export function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
-  const unit = kind === "run" ? "runs" : "trials";
-  const count = `${done} of ${of} ${unit}`;
+  const count = kind === "run" ? `${done} of ${of} runs` : `${Math.round((100 * done) / of)} %`;
   if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
   if (state === "cancelled") return `Canceled after ${count}.`;
   if (state === "failed") return `Failed: ${error}`;
-  return `${of} ${unit} in ${duration(seconds)}.`;
+  return `${kind === "run" ? `${of} runs` : "Done"} in ${duration(seconds)}.`;
 }
 
 function duration(seconds) {

@@ -1,8 +1,9 @@
 /* The pane that tunes the numbers of a tracker, on the recording or on the scenario. */
 
 import { choice, html } from "./elements.js";
-import { action, group, numberField } from "./fields.js";
-import { shown } from "./numbers.js";
+import { action, group, numberField, textField } from "./fields.js";
+import { even, shown, withPlaces } from "./numbers.js";
+import { columnsOf } from "./recording.js";
 import { told } from "./run.js";
 
 export const title = "Tune";
@@ -44,15 +45,15 @@ export function mount(element, app) {
   }
 
   async function run() {
-    const { tuning, tuneOn, recording, seed, sigma } = store.now;
+    const { tuning, tuneOn, recording, seed } = store.now;
     if (tuneOn === "recording" && !recording) {
       say("There is no recording to tune on: drop or choose one, or tune on the scenario.", "error");
       return;
     }
     const { free: numbers, ...rest } = tuning;
-    const place = tuneOn === "recording" ? { on: recording, sigma } : { on: null };
+    const place = tuneOn === "recording" ? { on: recording, ...columnsOf(store.now) } : {};
     try {
-      await socket.send("tune", { ...place, ...rest, free: numbers.trim() || null, seed });
+      await socket.send("tune", { ...place, ...rest, free: numbers || null, seed });
     } catch (error) {
       say(error.message, "error");
     }
@@ -64,6 +65,11 @@ export function mount(element, app) {
     } catch (error) {
       say(error.message, "error");
     }
+  }
+
+  function choose(text) {
+    const others = store.now.trackers.filter((each) => each.text !== text);
+    store.set({ trackers: [...others, { text, on: true }], view: "run" });
   }
 
   async function openInEditor(text) {
@@ -96,41 +102,67 @@ export function mount(element, app) {
   store.follow(["tuned"], ({ tuned }) => {
     found.hidden = !tuned;
     if (!tuned) return;
-    const open = html("button", { type: "button", class: "primary", onclick: () => openInEditor(tuned.text) }, "Open in the editor");
-    found.replaceChildren(table(tuned), ...(tuned.text ? [open] : []));
+    const { verdict, text, specification } = tuned;
+    const use = text
+      ? html("button", { type: "button", class: "primary", onclick: () => openInEditor(text) }, "Open in the editor")
+      : html("button", { type: "button", class: "primary", onclick: () => choose(specification) }, "Add to the trackers");
+    found.replaceChildren(
+      html("p", {}, `${verdict[0].toUpperCase()}${verdict.slice(1)}.`),
+      ...tablesOf(tuned),
+      html("div", { class: "actions" }, use),
+      ...tuned.notes.map((note) => html("p", { class: "muted" }, note)),
+    );
   });
 }
 
-function textField(label, placeholder, change) {
-  const input = html("input", {
-    type: "text",
-    placeholder,
-    spellcheck: "false",
-    autocomplete: "off",
-    onchange: () => change(input.value.trim()),
-  });
-  const show = (text) => {
-    if (document.activeElement !== input) input.value = text ?? "";
+/** The errors on what it was not tuned on, and the numbers, before and after. */
+function tablesOf({ errors, objective, units, numbers, start }) {
+  // From each to the tuned one: relative of an RMS error, a difference of likelihoods.
+  const relative = objective.startsWith("RMS");
+  const inWords = (change) => {
+    if (change === null) return "";
+    return relative ? `${withPlaces(100 * change, 1)} %` : withPlaces(change, 3);
   };
-  return { element: html("label", { class: "field" }, html("span", { class: "label" }, label), input), show };
-}
-
-function table({ rows }) {
-  return html(
-    "table",
-    { class: "result-table" },
-    html("caption", {}, "Error on what it was not tuned on"),
+  return [
     html(
-      "tbody",
-      {},
-      rows.map(({ name, value, se, unit }) =>
-        html(
-          "tr",
-          {},
-          html("th", { scope: "row" }, name),
-          html("td", {}, shown(value, 4), Number.isFinite(se) ? html("span", { class: "se" }, ` ± ${shown(se, 2)}`) : null, ` ${unit ?? ""}`),
+      "table",
+      { class: "result-table" },
+      html("caption", {}, `${objective}, on ${units} that it was not tuned on, and the change to the tuned one`),
+      html(
+        "tbody",
+        {},
+        errors.map(({ name, held_out: value, change, change_low: low, change_high: high }) =>
+          html(
+            "tr",
+            {},
+            html("th", { scope: "row" }, name),
+            html("td", { "data-value": value }, even(value, 4)),
+            html("td", { class: "se", title: `95 % interval ${inWords(low)} to ${inWords(high)}` }, inWords(change)),
+          ),
         ),
       ),
     ),
-  );
+    html(
+      "details",
+      {},
+      html("summary", {}, `${Object.keys(numbers).length} numbers`),
+      html(
+        "table",
+        { class: "result-table" },
+        html(
+          "tbody",
+          {},
+          Object.entries(numbers).map(([name, value]) =>
+            html(
+              "tr",
+              {},
+              html("th", { scope: "row" }, name),
+              html("td", { class: "se" }, shown(start[name], 4)),
+              html("td", {}, shown(value, 4)),
+            ),
+          ),
+        ),
+      ),
+    ),
+  ];
 }

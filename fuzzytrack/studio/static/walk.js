@@ -7,6 +7,7 @@ import { numberField } from "./fields.js";
 import { figure } from "./figure.js";
 import { keyOf } from "./lines.js";
 import { shown } from "./numbers.js";
+import { chosenTrackers } from "./pick.js";
 import { makeTrackPicture } from "./trackpicture.js";
 
 const AXES = ["x", "y", "z"];
@@ -56,8 +57,8 @@ export function mount(element, app) {
   );
 
   async function ask(now) {
-    const { walked, seed, asked: last, trackers, resultsTab, connected, scenario, state, view } = now;
-    const texts = last?.trackers ?? trackers.filter(({ on }) => on).map(({ text }) => text);
+    const { walked, seed, asked: last, resultsTab, connected, scenario, state, view } = now;
+    const texts = last?.trackers ?? chosenTrackers(now);
     tracker.replaceChildren(...texts.map((text) => html("option", { value: text }, text)));
     if (texts.length && !texts.includes(walked.tracker)) {
       store.set({ walked: { ...walked, tracker: texts[0] } });
