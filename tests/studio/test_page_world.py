@@ -159,7 +159,7 @@ def csv():
     random = np.random.default_rng(4)
     lines = ["time,id,x,y,true_x,true_y"]
     for name in "ab":
-        for k in range(60):
+        for k in range(110):
             true = 900 * np.cos(k / 15), 900 * np.sin(k / 15 + ord(name))
             numbers = map(repr, map(float, [*random.normal(true, 10), *true]))
             lines.append(f"{k},{name},{','.join(numbers)}")
@@ -182,12 +182,12 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv
     view(studio, "Data")
     drop(studio, "mine.csv", csv)
     # Two tracks without the column that tells them apart: the page says so, and takes the name.
-    expect(studio.get_by_role("alert")).to_contain_text("mine.csv: row 62")
+    expect(studio.get_by_role("alert")).to_contain_text("mine.csv: row 112")
     studio.get_by_role("textbox", name="Track column").fill("id")
     studio.keyboard.press("Enter")
     rows = studio.locator("#pane-data .result-table tbody tr")
     expect(rows).to_have_count(5, timeout=60_000)
-    expect(studio.locator("#pane-data")).to_contain_text("120 plots")
+    expect(studio.locator("#pane-data")).to_contain_text("220 plots")
     studio.get_by_role("combobox", name="Track", exact=True).select_option("1")
 
     studio.get_by_role("button", name="the recording").click()
