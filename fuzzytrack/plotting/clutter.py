@@ -168,4 +168,4 @@ def _draw_scans(ax: Axes, plane: GroundPlane, scans: Sequence[Scan], recent: int
     ship = np.asarray(scans[-1].own, np.float64)[None]
     style = {**STYLES["sensor"], "markeredgecolor": "white", "markeredgewidth": 0.8}
     if np.isfinite(ship).all():
-        ax.plot(*plane.shown(ship), label="own ship", **style)
+        ax.plot(*plane.shown(ship), label="radar", **style)

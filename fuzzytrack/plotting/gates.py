@@ -87,7 +87,7 @@ def plot_gates(
     picture.draw_gates(plots)
     ship = np.asarray(scan.own, np.float64)[None]
     if np.isfinite(ship).all() and (extent is None or _inside(ship, extent)[0]):
-        panel.plot(*plane.shown(ship), label="own ship", **STYLES["sensor"])
+        panel.plot(*plane.shown(ship), label="radar", **STYLES["sensor"])
     plane.finish(panel, limits=None if extent is None else np.array(extent, np.float64).T)
     picture.explain(plots)
     return figure, panel

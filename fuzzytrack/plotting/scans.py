@@ -185,7 +185,7 @@ class _Picture:
         x, y = self.plane.shown(ship)
         if np.ptp(ship, axis=0).max() > 0:
             self.ax.plot(x, y, color=shared.INK, linewidth=1.0, linestyle=(0, (6, 2)), zorder=2.25)
-        self.ax.plot(x[-1:], y[-1:], label="own ship", **STYLES["sensor"])
+        self.ax.plot(x[-1:], y[-1:], label="radar", **STYLES["sensor"])
 
     def draw_tracks(self) -> None:
         """Lines of tracks and their ends, or the density of their rows."""

@@ -45,7 +45,7 @@ def plot_scores(
     localization, whole = curves["ospa_localization"], curves["ospa"]
     above.fill_between(
         time, 0, localization, step="mid", color=shared.SKY, alpha=0.35, linewidth=0,
-        label="part by distance",
+        label="OSPA, localization",
     )  # fmt: skip
     above.step(time, whole, where="mid", color=shared.BLUE, linewidth=1.4, label="OSPA")
     above.step(

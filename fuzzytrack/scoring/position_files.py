@@ -29,6 +29,8 @@ __all__ = ["TableOptions", "read_positions", "read_times", "read_truth"]
 
 # Columns of position that are taken where there are no x and y.
 _COMPASS = ("north", "east")
+# Column of the number of a scan, in a table of scans or of plots.
+_SCAN = "scan"
 _TENTATIVE, _COASTING = "tentative", "coasting"
 # The row of its plot, where a track has none.
 _NO_PLOT = "-1"
@@ -121,6 +123,8 @@ def read_positions(
     given, left_out = _read(first, "tracks", tentative=(of_tracks or TableOptions()).tentative)
     there, _ = _read(second, "truth", tentative=True)
     notes = [f"{name}: {_sentence(each)}" for name, each in (("tracks", first), ("truth", second))]
+    if "status" in second.others and "status" not in first.others:
+        notes.append("the truth has a column status, as tracks have; are the two files swapped?")
     if left_out:
         notes.append(f"tracks: {counted(left_out, 'row')} of tentative tracks left out")
     return (given, there), tuple(notes)
@@ -369,7 +373,7 @@ def read_times(
     Raises
     ------
     DataError
-        If there are no such columns, or a time is none.
+        If there are no such columns, a time is none, or a scan has several rows.
     OSError
         If a file cannot be read.
     """
@@ -383,12 +387,28 @@ def read_times(
         chosen[time_columns(names, PlotDescription(time=column), str(file))[1]] = "time"
         if options.group is not None:
             chosen[known(names, options.group, "group", str(file))] = "word"
-        return chosen
+        more: dict[str, Kind] = {} if _SCAN in chosen or _SCAN not in names else {_SCAN: "word"}
+        return chosen | more
 
     table = read_table(file, wanted)
     name, *group = chosen
     seconds = clock.seconds(table.cells[name], table.rows, table.file, name)
+    if _SCAN in table.words and _SCAN not in chosen:
+        _check_scans_once(table, group)
     if not group:
         return seconds
     found = table.words[group[0]]
     return {name: seconds[found.codes == code] for code, name in enumerate(found.names)}
+
+
+def _check_scans_once(table: Table, group: list[str]) -> None:
+    """Refuse a table with several rows of a scan, as one of plots has."""
+    seen: dict[tuple[str, ...], int] = {}
+    for row, words in enumerate(zip(*(table.words[name] for name in (*group, _SCAN)), strict=True)):
+        if words in seen:
+            raise DataError(
+                f"{table.file}: row {table.rows[row]}, column {_SCAN}: {words[-1]!r} is also in "
+                f"row {table.rows[seen[words]]}; expected a table of scans, each in one row "
+                "(`group` is the column that tells recordings apart)"
+            )
+        seen[words] = row

@@ -11,7 +11,7 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.scan_plots import ScanPlots
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scoring.position_files import TableOptions, read_truth
-from fuzzytrack.simulation.scene.files import as_scene, names_scene
+from fuzzytrack.simulation.scene.files import as_scene, names_scene, shipped_scenes
 from fuzzytrack.simulation.scene.scene import Scene
 from fuzzytrack.simulation.scene.simulate import simulate_scans
 from fuzzytrack.tuning.scan_recordings import ScanRecording
@@ -161,7 +161,8 @@ def scan_sources(
             found += simulated_recordings(each, runs, seed)
         elif truth is None:
             raise ValueError(
-                f"truth: {each} is no scene, so it needs a table of true positions to be tuned on"
+                f"truth: {each} is no scene, so it needs a table of true positions to be tuned on; "
+                f"scenes: {', '.join(shipped_scenes())}"
             )
         else:
             found += recorded_scans(each, truth, **recording)

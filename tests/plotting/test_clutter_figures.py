@@ -71,7 +71,7 @@ def test_the_map_goes_as_far_as_the_plots_and_shows_the_last_ones():
     drawn = lines(ax)
     expected = np.concatenate([scan.positions for scan in scans[-3:]])
     np.testing.assert_array_equal(drawn["plots of the last 3 scans"], expected)
-    np.testing.assert_array_equal(drawn["own ship"], [HARBOR.scans[-1].own])
+    np.testing.assert_array_equal(drawn["radar"], [HARBOR.scans[-1].own])
     low, high = ax.get_xlim()
     everything = np.concatenate([scan.positions for scan in HARBOR.scans])
     assert low < np.quantile(everything[:, 0], 0.01)

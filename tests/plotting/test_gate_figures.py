@@ -32,7 +32,7 @@ def test_outlines_predictions_and_taken_plots(session):
     np.testing.assert_array_equal(drawn["predicted"], gates.predicted)
     np.testing.assert_array_equal(drawn["plot"], SCAN.positions[1:2])
     np.testing.assert_array_equal(drawn["plot taken"], SCAN.positions[[0, 2]])
-    np.testing.assert_array_equal(drawn["own ship"], [[7.0, 8.0]])
+    np.testing.assert_array_equal(drawn["radar"], [[7.0, 8.0]])
     filled = [c for c in ax.collections if isinstance(c, PolyCollection)]
     corners = [path.vertices[:-1] for c in filled for path in c.get_paths()]
     # The tentative one first.
@@ -56,7 +56,7 @@ def test_only_what_is_asked_for(session):
     assert {text.get_text() for text in ax.texts} == {"1"}
     assert ax.get_xlim()[0] <= 300 < 420 <= ax.get_xlim()[1]
     assert ax.get_xlim()[1] - ax.get_xlim()[0] < 300
-    assert "own ship" not in lines(ax)
+    assert "radar" not in lines(ax)
 
 
 def test_north_is_upwards(session):

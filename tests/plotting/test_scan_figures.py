@@ -108,7 +108,7 @@ def test_plots_truth_and_own_ship():
     drawn = lines(ax)
     expected = np.concatenate([scan.positions for scan in HARBOR.scans])
     np.testing.assert_array_equal(drawn["plots"], expected)
-    np.testing.assert_array_equal(drawn["own ship"], [HARBOR.scans[-1].own])
+    np.testing.assert_array_equal(drawn["radar"], [HARBOR.scans[-1].own])
     true = drawn["true"]
     gaps = np.flatnonzero(np.isnan(true[:, 0]))
     np.testing.assert_array_equal(gaps, [60, 121, 182])
@@ -170,7 +170,7 @@ def test_a_result_is_taken_by_its_reports_and_own_path():
         own = np.array([[0.0, 0.0], [3.0, 4.0]])
 
     _, ax = plot_scan(Result())
-    np.testing.assert_array_equal(lines(ax)["own ship"], [[3.0, 4.0]])
+    np.testing.assert_array_equal(lines(ax)["radar"], [[3.0, 4.0]])
 
 
 @pytest.mark.parametrize("scans", [None, [], [Scan(0.0, np.empty((0, 2)))]])

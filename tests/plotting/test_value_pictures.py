@@ -110,7 +110,7 @@ def test_a_scan_result_draws_its_tracks_and_lists_them():
     ]
     result = ScanTracker().run(scans)
     names = [text.get_text() for text in result.plot(scans).axes[0].get_legend().get_texts()]
-    assert names == ["plots", "moving", "start", "in the last scan", "own ship"]
+    assert names == ["plots", "moving", "start", "in the last scan", "radar"]
     page = result._repr_html_()
     assert "Scan tracker default" in page
     # Three facts, and a row for each of two tracks.

@@ -112,6 +112,7 @@ def test_numbers_can_be_changed_behind_the_name():
         ("default:clutter.cell=0", r"clutter.cell must be a number > 0 \(m\), not 0.0"),
         ("default:sensor.detection=1.2", "sensor.detection must be a number > 0 and < 1"),
         ("default:clutter.cell=far", "not 'far'"),
+        ("default:clutter.cell", "'clutter.cell' changes no number; expected role.number=value"),
         ("default:clutter.cell=1:clutter.cell=2", "given twice"),
         ("defalt", "unknown configuration 'defalt'; did you mean 'default'?"),
     ],

@@ -163,6 +163,12 @@ def test_options_that_do_not_fit(write):
             read_positions(*files, options)
 
 
+def test_files_that_look_swapped_are_noted(write):
+    truth = write(TRUTH.replace("id", "track_id"), "truth.csv")
+    _, notes = read_positions(truth, write(TRACKS))
+    assert notes[2] == "the truth has a column status, as tracks have; are the two files swapped?"
+
+
 def test_times_of_scans(write):
     tracks = write("run,t,track_id,x,y\na,2,1,0,0\nb,3,1,0,0\n")
     scans = write("run,t,own_x\na,1,0\na,2,0\nb,3,0\n", "scans.csv")
@@ -171,6 +177,9 @@ def test_times_of_scans(write):
     assert read_times(scans, tracks).tolist() == [1, 2, 3]
     other = write("when\n5\n", "other.csv")
     assert read_times(other, tracks, time="when").tolist() == [5]
+    plots = write("run,scan,t\na,0,1\nb,0,1\na,0,2\n", "plots.csv")
+    with pytest.raises(DataError, match="row 4, column scan: '0' is also in row 2; expected"):
+        read_times(plots, tracks, TableOptions(group="run"))
     seconds = write("run,t_s\na,4\n", "seconds.csv")
     assert read_times(seconds, tracks).tolist() == [4]
     with pytest.raises(DataError, match="no column t, time or timestamp"):

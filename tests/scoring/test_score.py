@@ -252,7 +252,7 @@ def test_picture(scores):
     above, below = figure.axes
     assert above.get_title(loc="left") == "rough"
     assert [text.get_text() for text in above.get_legend().get_texts()] == [
-        "part by distance", "OSPA", "OSPA(2)",
+        "OSPA, localization", "OSPA", "OSPA(2)",
     ]  # fmt: skip
     steps = above.lines[0].get_ydata()
     assert steps == pytest.approx(scores.groups[1].curves["ospa"])

@@ -8,10 +8,16 @@ from typing import Any
 
 from fuzzytrack import specs
 from fuzzytrack.scan.scan_tracker import ScanTracker
-from fuzzytrack.scan.scanners.loading import dumps, load_configuration, loads_configuration
+from fuzzytrack.scan.scanners.loading import (
+    dumps,
+    load_configuration,
+    loads_configuration,
+    shipped_scanners,
+)
 from fuzzytrack.scan.scanners.numbers import with_values
 from fuzzytrack.scan.scanners.reader import SENSOR, Configuration
 from fuzzytrack.scan.scanners.roles import ROLES
+from fuzzytrack.yamltree import quoted
 
 __all__ = [
     "as_scanner",
@@ -92,6 +98,12 @@ def make_scanner(text: str) -> ScanTracker:
             raise ValueError(f"{text!r}: number {key!r} is given twice")
         changes[key] = value.strip()
         name = name[: found.start()]
+    before, colon, rest = name.partition(":")
+    if colon and (before in shipped_scanners() or before.endswith((".yaml", ".yml"))):
+        raise ValueError(
+            f"{text!r}: {quoted(rest)} changes no number; expected role.number=value, as in "
+            f"{before}:sensor.detection=0.8"
+        )
     return scanner_of(with_values(load_configuration(name), changes))
 
 
