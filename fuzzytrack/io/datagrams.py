@@ -21,6 +21,8 @@ __all__ = ["AsterixDatagrams", "DatagramStream", "is_address"]
 _ADDRESS = re.compile(r"udp://(127(?:\.\d{1,3}){3}|localhost):(\d{1,5})", re.ASCII)
 # Datagrams that are given at a time, and bytes of one at most.
 _MANY, _LONGEST = 500, 1 << 16
+# Bytes of the category and the length of a block.
+_HEAD = 3
 # What the system is asked to keep while plots are tracked; it may keep less.
 _BUFFER = 1 << 22
 
@@ -124,8 +126,8 @@ class AsterixDatagrams:
         category: int | None = None,
         source: str | None = None,
     ) -> None:
-        self.file, self._first = file, list(datagrams)
-        self._losses = Losses()
+        self.file, self._losses, self._taken = file, Losses(), 0
+        self._first = self._whole(datagrams)
         self._reader = Asterix(category, source, "none")
         first = self._opened(self._first)
         self.types, self.description, self.origin = first.types, first.description, first.origin
@@ -141,7 +143,7 @@ class AsterixDatagrams:
         self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
     ) -> Iterator[Table]:
         """The table of the first datagrams."""
-        yield self.table(self._first, 1, kinds)
+        yield self._table(self._first, 1, kinds)
 
     def table(self, datagrams: Sequence[bytes], first: int, kinds: Mapping[str, Kind]) -> Table:
         """Table of some datagrams.
@@ -159,6 +161,9 @@ class AsterixDatagrams:
         DataError
             If none of them holds a plot.
         """
+        return self._table(self._whole(datagrams), first, kinds)
+
+    def _table(self, datagrams: Sequence[bytes], first: int, kinds: Mapping[str, Kind]) -> Table:
         source = self._opened(datagrams)
         unknown = {name for name in kinds if name not in source.types}
         if unknown:
@@ -167,6 +172,29 @@ class AsterixDatagrams:
         table.rows[:] += first - 1
         return table
 
+    def _whole(self, datagrams: Sequence[bytes]) -> list[bytes]:
+        """Datagrams up to where a block does not end in them, lest it take bytes of the next."""
+        kept = []
+        for datagram in datagrams:
+            end = _end_of_blocks(datagram)
+            kept.append(datagram[:end])
+            if end < len(datagram):
+                place = f"datagram {self._taken + len(kept)}, byte {end}"
+                self._losses.add("ends of datagrams that are no whole block", place)
+        self._taken += len(kept)
+        return kept
+
     def _opened(self, datagrams: Sequence[bytes]) -> RecordSource:
         stream = ByteStream(self.file, io.BytesIO(b"".join(datagrams)))
         return self._reader.source_of(stream, self._losses)
+
+
+def _end_of_blocks(datagram: bytes) -> int:
+    """Bytes of the whole blocks at the beginning: each begins with its category and its length."""
+    end = 0
+    while end + _HEAD <= len(datagram):
+        length = int.from_bytes(datagram[end + 1 : end + _HEAD], "big")
+        if not _HEAD <= length <= len(datagram) - end:
+            break
+        end += length
+    return end

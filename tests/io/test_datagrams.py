@@ -72,6 +72,21 @@ def test_tables_of_datagrams():
 
 
 @pytest.mark.usefixtures("asterix")
+@pytest.mark.parametrize(
+    "broken",
+    [b"0\xff\xff" + b"\xff" * 40, b"0\0\0", b"0", plots_048((12.0, 926, 0))[:-4]],
+    ids=["long", "no-length", "one-byte", "cut"],
+)
+def test_a_broken_datagram_leaves_the_next_one_whole(broken):
+    whole = [plots_048((10.0 + k, 18520, 90)) for k in range(2)]
+    kinds = {"time": "time", "range": "gaps"}
+    tables = AsterixDatagrams("the feed", [broken, whole[0], broken, whole[1]])
+    (table,) = tables.tables(kinds, None)
+    assert table.rows.tolist() == [1, 2]
+    assert any("no whole block: 2 left out, first at datagram 1" in n for n in tables.notes)
+
+
+@pytest.mark.usefixtures("asterix")
 def test_bytes_that_are_no_block():
     with pytest.raises(DataError, match="holds no plots"):
         AsterixDatagrams("the feed", [b"what?"])
