@@ -8,7 +8,7 @@ import { pictureMenu } from "./pictures.js";
 import { signOf } from "./rulebase.js";
 import { SHAPES } from "./shapes.js";
 import { makeStage } from "./stage.js";
-import { nameOf, paletteOf, rangeOf, spotOf, visitShares } from "./surface.js";
+import { nameOf, paletteOf, rangeOf, spotOf } from "./surface.js";
 
 export const title = "Contours";
 // Pixels of the colored image between two points of the surface.
@@ -232,18 +232,16 @@ function drawSets(pen, box, axes) {
   });
 }
 
-/** Dots whose area grows with the logarithm of the visits. */
-function drawVisits(pen, box, visits) {
-  const share = visitShares(visits);
-  const count = visits.counts.length;
-  const most = Math.min(box.width, box.height) / count / 1.6;
-  for (let j = 0; j < count; j += 1) {
-    for (let i = 0; i < visits.counts[j].length; i += 1) {
-      const [x, y] = [i / (visits.counts[j].length - 1), j / (count - 1)];
-      const seen = share(x, y);
-      if (!seen) continue;
-      const place = [box.left + x * box.width, box.top + (1 - y) * box.height];
-      pen.circle(...place, most * Math.sqrt(seen), "#fffc", "#0008", 0.5);
-    }
-  }
+/** A dot in each cell that was visited; its area grows with the logarithm of the visits. */
+function drawVisits(pen, box, { counts }) {
+  const most = Math.log1p(Math.max(1, ...counts.flat()));
+  const largest = Math.min(box.width, box.height) / counts.length / 1.6;
+  counts.forEach((row, j) =>
+    row.forEach((count, i) => {
+      if (!count) return;
+      const x = box.left + ((i + 0.5) / row.length) * box.width;
+      const y = box.top + (1 - (j + 0.5) / counts.length) * box.height;
+      pen.circle(x, y, largest * Math.sqrt(Math.log1p(count) / most), "#fffc", "#0008", 0.5);
+    }),
+  );
 }

@@ -7,7 +7,7 @@ import { token } from "./colors.js";
 
 export const title = "Gain plane";
 const WHOLE = [[0, 2], [0, 4]];
-const MARGIN = { left: 48, right: 16, top: 12, bottom: 40 };
+const MARGIN = { left: 58, right: 16, top: 12, bottom: 40 };
 
 export function mount(element, app) {
   const { socket, store, say } = app;

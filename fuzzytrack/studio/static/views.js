@@ -18,7 +18,6 @@ import * as world from "./world.js";
 // Modules of panes by name: each has `title` and `mount(element, app)`.
 const PANES = { rules, text, sets, surface, contour, explain, gains: gainplane, world, run, results, data, tune };
 
-// A view without panes has no place in the rail.
 const VIEWS = [
   {
     id: "design",
@@ -51,7 +50,7 @@ export function mountViews(rail, main, app) {
     module.mount(pane, app);
     return [name, pane];
   });
-  const buttons = VIEWS.filter(({ panes: names }) => names.length).map(({ id, title, picture }) => {
+  const buttons = VIEWS.map(({ id, title, picture }) => {
     const open = () => store.set({ view: id });
     return html("button", { type: "button", "data-view": id, onclick: open }, icon(picture), html("span", {}, title));
   });
