@@ -4,7 +4,7 @@ import { html } from "./elements.js";
 import { icon } from "./icons.js";
 import { shown, tidy, typed } from "./numbers.js";
 import { placeKey } from "./rules.js";
-import { signOf, wordsOf } from "./rulebase.js";
+import { axesOf, outputsOf, piecesOf, signOf } from "./rulebase.js";
 
 export const title = "Explain";
 // Rules that fire less are counted but not listed.
@@ -49,7 +49,7 @@ export function followPoint(app) {
     const { state, point } = store.now;
     if (!state?.rulebase) return;
     const from = complete(state.rulebase, point ?? {});
-    const moved = state.rulebase.inputs.slice(0, 2).map(({ name, universe: [low, high] }, k) => {
+    const moved = axesOf(state.rulebase, store.now.axes).map(({ name, universe: [low, high] }, k) => {
       const next = from[name] + ([right, up][k] * (high - low)) / 40;
       return [name, Math.max(low, Math.min(high, next))];
     });
@@ -210,7 +210,13 @@ function row(rulebase, rule, store) {
         words || rule.text,
       ),
     ),
-    html("td", {}, said ? wordsOf(said, rules.form) : ""),
+    html("td", {}, said ? wordsOf(said, rulebase) : ""),
     html("td", {}, html("span", { class: "strength" }, bar, shown(rule.strength, 3))),
   );
+}
+
+function wordsOf(rule, rulebase) {
+  return piecesOf(rule, rulebase.rules.form, outputsOf(rulebase))
+    .map(({ text }) => text)
+    .join("");
 }

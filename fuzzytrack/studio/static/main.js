@@ -17,7 +17,7 @@ const INITIAL = {
   scenario: null, job: null, results: null, asked: null, tracked: null, tuned: null, uploads: [],
   // What is looked at.
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
-  against: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
+  against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
   resultsTab: "all", hidden: [], sorting: { key: null, down: false }, quantity: "predicted", band: "se",
   gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, uploaded: null, trackShown: 0,
   axisShown: 0,
@@ -28,7 +28,7 @@ const INITIAL = {
   tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },
 };
 const KEPT = [
-  "session", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "point", "camera",
+  "session", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "axes", "point", "camera",
   "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
   "asked", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
   "trackers", "wantedRuns", "seed", "sigma", "columns", "tuneOn", "tuning",

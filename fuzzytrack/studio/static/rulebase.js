@@ -11,6 +11,12 @@ export function variable(rulebase, name) {
   return variables(rulebase).find((one) => one.name === name);
 }
 
+/** The inputs that surfaces are drawn over: those that were chosen, or the first two. */
+export function axesOf({ inputs }, chosen) {
+  const found = (chosen ?? []).map((name) => inputs.find((one) => one.name === name));
+  return found.length && found.every(Boolean) ? found : inputs.slice(0, 2);
+}
+
 /** What a surface can show: the outputs, and the gains that follow from them. */
 export function drawable(rulebase) {
   return rulebase?.surfaces ?? [];
@@ -26,38 +32,77 @@ export function consequents(cell, output) {
   return cell.parts.filter((part) => part.output === output);
 }
 
-/** A rule as it is shown: as written in a table, and in a list by output. */
-export function wordsOf({ text, parts }, form) {
-  if (form === "table") return text;
-  return parts
-    .map(({ output, set, confidence: sure }) => `${output} ${set}${sure === 1 ? "" : `@${sure}`}`)
-    .join(", ");
+/**
+ * A rule as it is shown, in pieces {text, output}: short in a table ("S-M/L", with the sign @ and a
+ * number for a confidence below 1), by output in a list. Pieces that name sets have their output.
+ */
+export function piecesOf(rule, form, outputs) {
+  if (form === "list") return listPieces(rule, outputs);
+  const sets = outputs.map((output) => consequents(rule, output).map(({ set }) => set).join("/"));
+  const pieces = sets.flatMap((text, k) => [{ text: k ? "-" : "" }, { text, output: outputs[k] }]);
+  return rule.weight === 1 ? pieces : [...pieces, { text: `@${rule.weight ?? "…"}`, tail: true }];
 }
 
-/** Text of a cell in which `output` says `set` and the rest stays; null if it must be typed. */
+function listPieces(rule, outputs) {
+  const said = outputs.filter((output) => consequents(rule, output).length);
+  return said.flatMap((output, k) => [
+    { text: `${k ? ", " : ""}${output} ` },
+    { text: consequents(rule, output).map(word).join("/"), output },
+  ]);
+}
+
+/** A set with its confidence, as it is written. */
+function word({ set, confidence }) {
+  return confidence === 1 ? set : `${set}@${confidence}`;
+}
+
+/** The outputs in the order in which rules name them. */
+export function outputsOf({ rules, outputs }) {
+  return rules.outputs ?? outputs.map(({ name }) => name);
+}
+
+/** Text of a cell in which `output` says `set` alone; the other outputs stay. */
 export function withWord(cell, outputs, output, set) {
-  const said = outputs.map((name) => (name === output ? [{ set }] : consequents(cell, name)));
-  return joined(outputs, said.map((list) => list.map((one) => one.set)), confidence(cell));
+  // Without a weight the cell has several confidences.
+  const sure = cell.weight ?? 1;
+  return textOf(outputs, (name) =>
+    name === output ? [{ set, confidence: sure }] : consequents(cell, name),
+  );
 }
 
-/** Text of a cell with another confidence, likewise. */
+/** Text of a cell in which an output says a set besides others, or no longer; they share it evenly. */
+export function withShare(cell, outputs, output, set) {
+  const said = consequents(cell, output).map((one) => one.set);
+  const sets = said.includes(set) ? said.filter((one) => one !== set) : [...said, set];
+  if (!sets.length) return cell.text;
+  const share = Number((1 / sets.length).toFixed(3));
+  return textOf(outputs, (name) =>
+    name === output
+      ? sets.map((one) => ({ set: one, confidence: share }))
+      : consequents(cell, name),
+  );
+}
+
+/** Text of a cell with one confidence for all that it says. */
 export function withConfidence(cell, outputs, sure) {
-  const said = outputs.map((name) => consequents(cell, name).map((one) => one.set));
-  return joined(outputs, said, sure);
+  return textOf(outputs, (name) =>
+    consequents(cell, name).map(({ set }) => ({ set, confidence: sure })),
+  );
 }
 
-/** The one confidence of a cell, or null where it has several. */
-export function confidence(cell) {
-  return cell.weight;
-}
-
-function joined(outputs, said, sure) {
-  if (sure === null || said.some((list) => list.length > 1)) return null;
-  const known = outputs.filter((_, k) => said[k].length);
-  const words = said.flat();
-  const tail = sure === 1 ? "" : `@${sure}`;
+/** The short form of a cell where it is enough, else that by output. */
+function textOf(outputs, saidOf) {
+  const said = outputs.map((name) => [name, saidOf(name)]).filter(([, parts]) => parts.length);
+  const parts = said.flatMap(([, all]) => all);
+  const even = parts.every((part) => part.confidence === parts[0].confidence);
   // A hyphen in a name would leave two ways to read the short form.
-  const short = known.length === outputs.length && words.every((word) => /^\w+$/.test(word));
-  if (short) return words.join("-") + tail;
-  return `{${known.map((name, k) => `${name}: ${words[k]}${tail}`).join(", ")}}`;
+  const plain = parts.length === outputs.length && parts.every(({ set }) => /^\w+$/.test(set));
+  if (even && plain && said.every(([, all]) => all.length === 1)) {
+    return word({ ...parts[0], set: parts.map(({ set }) => set).join("-") });
+  }
+  const entries = said.map(([name, all]) => {
+    const words = all.map(word).join(", ");
+    return `${name}: ${all.length > 1 ? `[${words}]` : words}`;
+  });
+  return `{${entries.join(", ")}}`;
 }

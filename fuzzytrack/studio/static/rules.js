@@ -4,7 +4,9 @@ import { color, css, ink, mix, shareOf, token } from "./colors.js";
 import { check, html, select } from "./elements.js";
 import { SvgPen } from "./pens.js";
 import { pictureMenu } from "./pictures.js";
-import { confidence, consequents, variable, withConfidence, withWord, wordsOf } from "./rulebase.js";
+import {
+  consequents, outputsOf, piecesOf, variable, withConfidence, withShare, withWord,
+} from "./rulebase.js";
 import { complaintRow } from "./text.js";
 import { typed } from "./numbers.js";
 
@@ -67,7 +69,7 @@ export function mount(element, app) {
       const rule = slot.rule(rulebase.rules);
       const said = target ? consequents(rule, output) : [];
       tint(slot, target, said, palette);
-      write(slot.box, wordsOf(rule, rulebase.rules.form), said);
+      write(slot.box, piecesOf(rule, rulebase.rules.form, outputsOf(rulebase)), output);
       const strength = fired?.get(slot.key);
       slot.td.classList.toggle("fired", Boolean(strength));
       slot.td.classList.toggle("idle", Boolean(fired) && !strength);
@@ -114,10 +116,12 @@ export function mount(element, app) {
 
   function say(slot, output, set) {
     const { rulebase } = store.now.state;
-    const text = withWord(slot.rule(rulebase.rules), outputsOf(rulebase), output, set);
-    if (text === null) {
-      app.say("This rule has several sets for an output: press Enter and type its text.", "error");
-    } else change(slot, text);
+    change(slot, withWord(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
+  }
+
+  function share(slot, output, set) {
+    const { rulebase } = store.now.state;
+    change(slot, withShare(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
   }
 
   function change(slot, text, refused) {
@@ -244,7 +248,8 @@ export function mount(element, app) {
               type: "button",
               class: "chip",
               "aria-pressed": String(said.includes(name)),
-              onclick: () => say(slot, target.name, name),
+              title: "With Shift besides the other sets",
+              onclick: (event) => (event.shiftKey ? share : say)(slot, target.name, name),
             },
             name,
           );
@@ -257,17 +262,16 @@ export function mount(element, app) {
   }
 
   function sureBox(slot, rule) {
-    const sure = confidence(rule);
+    const sure = rule.weight;
     const box = html("input", {
       type: "text",
       inputmode: "decimal",
       size: 5,
       "aria-label": "Confidence of the rule, from 0 to 1",
-      disabled: sure === null,
       onchange: () => {
         const value = typed(box.value);
-        const text = withConfidence(rule, outputsOf(store.now.state.rulebase), value);
-        if (value >= 0 && value <= 1 && text !== null) change(slot, text);
+        const outputs = outputsOf(store.now.state.rulebase);
+        if (value >= 0 && value <= 1) change(slot, withConfidence(rule, outputs, value));
         else app.say("Confidence: type a number from 0 to 1.", "error");
       },
     });
@@ -385,10 +389,6 @@ function strengths(explanation) {
   );
 }
 
-function outputsOf({ rules, outputs }) {
-  return rules.outputs ?? outputs.map(({ name }) => name);
-}
-
 /** What the grid is built for; cells alone are changed in place, so the focus stays. */
 function layoutOf({ rules, inputs }) {
   if (rules.form === "table") {
@@ -466,14 +466,17 @@ function tint({ td }, target, said, palette) {
   td.style.color = stops.length === 1 ? ink(paints[0]) : "";
 }
 
-/** The text of a cell, the words of the colored output bold. */
-function write(box, text, said) {
-  const wanted = new Set(said.map(({ set }) => set));
-  const known = `${text}|${[...wanted]}`;
+/** The words of a cell, those of the colored output bold. */
+function write(box, pieces, output) {
+  const known = JSON.stringify([pieces, output]);
   if (box.dataset.known === known) return;
   box.dataset.known = known;
-  const parts = text.split(/([\w.]+)/);
-  box.replaceChildren(...parts.map((part) => (wanted.has(part) ? html("b", {}, part) : part)));
+  box.replaceChildren(
+    ...pieces.map((piece) => {
+      if (piece.tail) return html("small", {}, piece.text);
+      return piece.output === output ? html("b", {}, piece.text) : piece.text;
+    }),
+  );
 }
 
 function sentence(text) {

@@ -36,6 +36,11 @@ export function mount(element, app) {
       html("h2", {}, title),
       names.element,
       html("span", { class: "space" }),
+      html(
+        "button",
+        { type: "button", class: "quiet", title: "Add a set", "aria-label": "Add a set", onclick: add },
+        icon("add"),
+      ),
       pictureMenu("the sets", () => `${store.now.state.name}-${current().name}-sets`, () =>
         svgFile(picture, token("--panel")),
       ),
@@ -525,8 +530,6 @@ export function mount(element, app) {
             ),
           ]
         : []),
-      html("span", { class: "space" }),
-      html("button", { type: "button", class: "quiet", onclick: add, title: `Add a set to ${target.name}` }, icon("add"), "set"),
     );
   }
 
@@ -613,7 +616,7 @@ function curve(at, one, stroke, chosen) {
   const line = svg("polyline", { class: chosen ? "curve chosen" : "curve", points: points.join(" "), stroke });
   if (!chosen) return line;
   const foot = `${at.x(at.low)},${at.y(0)} ${points.join(" ")} ${at.x(at.high)},${at.y(0)}`;
-  return svg("g", {}, svg("polygon", { class: "area", points: foot, fill: stroke }), line);
+  return svg("g", {}, svg("polygon", { class: "inside", points: foot, fill: stroke }), line);
 }
 
 /** Names over the peaks, in two rows where they would touch. */

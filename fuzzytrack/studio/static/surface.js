@@ -6,7 +6,7 @@ import { check, choice, html, select } from "./elements.js";
 import { icon } from "./icons.js";
 import { shown, span, ticks } from "./numbers.js";
 import { pictureMenu } from "./pictures.js";
-import { drawable, signOf } from "./rulebase.js";
+import { axesOf, drawable, signOf } from "./rulebase.js";
 import { makeStage } from "./stage.js";
 
 export const title = "Surface";
@@ -30,6 +30,7 @@ export function mount(element, app) {
   const note = html("p", { class: "note", hidden: true });
   const outputs = choice("Output that is shown", (shown) => store.set({ shown }));
   const against = html("span");
+  const over = html("span", { class: "over" });
   const stage = makeStage(canvas, draw, () => app.drawn(store.now.values?.version ?? -1));
 
   element.append(
@@ -50,6 +51,7 @@ export function mount(element, app) {
       "div",
       { class: "tools" },
       against,
+      over,
       html("span", { class: "visits-check" }),
       html("span", { class: "space" }),
       select(
@@ -152,6 +154,23 @@ export function mount(element, app) {
     outputs.show(
       drawable(rulebase).map((name) => [name, signOf(name), labels[name]]),
       shown,
+    );
+  });
+  store.follow(["state", "axes"], ({ state, axes }) => {
+    const inputs = state?.rulebase?.inputs ?? [];
+    over.hidden = inputs.length < 3;
+    if (over.hidden) return;
+    const chosen = axesOf(state.rulebase, axes).map(({ name }) => name);
+    over.replaceChildren(
+      ...chosen.map((name, k) =>
+        select(
+          k ? "Input that runs to the back" : "Input that runs to the right",
+          inputs.map((one) => [one.name, `${k ? "y" : "x"}: ${one.name}`]),
+          name,
+          // The same input twice would be no surface: the two change places.
+          (now) => store.set({ axes: now === chosen[1 - k] ? [...chosen].reverse() : chosen.with(k, now) }),
+        ),
+      ),
     );
   });
   store.follow(["files", "shipped", "against"], ({ files, shipped, against: chosen }) => {

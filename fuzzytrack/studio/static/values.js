@@ -1,6 +1,6 @@
 /* The values of the surface that is shown: asked for after every change, kept in the store. */
 
-import { drawable } from "./rulebase.js";
+import { axesOf, drawable } from "./rulebase.js";
 
 // Points on each axis while a set is dragged, when a new surface comes many times a second.
 const COARSE = 41;
@@ -19,10 +19,13 @@ export function followValues(app) {
       store.set({ shown: possible[0] });
       return;
     }
-    const axes = rulebase.inputs.slice(0, 2);
+    const axes = axesOf(rulebase, now.axes);
     const points = dragging ? Math.min(now.points, COARSE) : now.points;
     const args = { outputs: [shown], columns: points, against };
-    if (rulebase.inputs.length > 2) args.at = others(rulebase, point);
+    if (rulebase.inputs.length > 2) {
+      args.inputs = axes.map(({ name }) => name);
+      args.at = others(rulebase, axes, point);
+    }
     // Undo and redo make new versions, so a version tells whether there is something new.
     const wanted = JSON.stringify([state.version, args]);
     if (wanted === asked) return;
@@ -50,17 +53,18 @@ export function followValues(app) {
     }
   }
 
-  store.follow(["state", "shown", "against", "points", "dragging", "point", "connected"], ask);
+  const keys = ["state", "shown", "against", "axes", "points", "dragging", "point", "connected"];
+  store.follow(keys, ask);
   store.follow(["connected"], ({ connected }) => {
     if (!connected) asked = "";
   });
 }
 
-function others(rulebase, point) {
+/** The other inputs are where the explained point is, or in the middle. */
+function others({ inputs }, axes, point) {
   return Object.fromEntries(
-    rulebase.inputs.slice(2).map(({ name, universe: [low, high] }) => [
-      name,
-      point?.[name] ?? (low + high) / 2,
-    ]),
+    inputs
+      .filter((one) => !axes.includes(one))
+      .map(({ name, universe: [low, high] }) => [name, point?.[name] ?? (low + high) / 2]),
   );
 }
