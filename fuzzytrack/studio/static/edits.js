@@ -3,8 +3,11 @@
 // Enough for the script that measures latencies; older ones are dropped.
 const MOST_TIMES = 5000;
 
-/** `edit(command, arguments)` brings true if it was done; a refusal is said, or given to `refused`. */
-export function makeEdits(socket, store, say) {
+/**
+ * `edit(command, arguments)` brings true if it was done; a refusal is said, or given to `refused`.
+ * `together(state)` brings what the store is to have of a new state.
+ */
+export function makeEdits(socket, store, say, together) {
   const queue = [];
   const undrawn = [];
   const times = [];
@@ -28,7 +31,7 @@ export function makeEdits(socket, store, say) {
       undrawn.splice(0, undrawn.length - MOST_TIMES);
       undrawn.push({ command, sent, answered: performance.now(), version: state.version });
       // Undo and redo may change the scenario too.
-      store.set(scenario ? { state, scenario } : { state });
+      store.set({ ...(await together(state)), ...(scenario ? { scenario } : {}) });
       resolve(true);
     } catch (error) {
       refused(error);

@@ -22,7 +22,7 @@ const INITIAL = {
   gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, uploaded: null, trackShown: 0,
   axisShown: 0,
   // How.
-  points: 61, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
+  points: 41, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
   shadeVisits: false, palette: "viridis", scheme: "light",
   trackers: [], wantedRuns: 200, seed: 0, sigma: null, columns: { time: "", id: "", axes: "", truth: "" }, tuneOn: "scenario",
   tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },
@@ -49,7 +49,7 @@ function say(text, kind = "note") {
 
 const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
 const socket = connect(token, heard);
-const { edit, drawn } = makeEdits(socket, store, say);
+const { edit, drawn } = makeEdits(socket, store, say, followValues(socket, store, say));
 const app = {
   socket, store, say, edit, drawn, isShown, tabs,
   can: (command) => store.now.hello?.commands?.includes(command) ?? false,
@@ -58,7 +58,6 @@ const app = {
   setScheme,
 };
 Object.assign(app, followPoint(app), { scenario: followScenario(app) });
-followValues(app);
 
 /** Tabs of the rules: the table, or the text it stands in. */
 function tabs() {

@@ -22,6 +22,7 @@ export function mount(element, app) {
   const coloring = html("span");
   let slots = [];
   let shape = "";
+  let painted = "";
   let editor = null;
 
   element.append(
@@ -312,6 +313,7 @@ export function mount(element, app) {
     if (wanted !== shape) {
       shape = wanted;
       editor = null;
+      painted = "";
       build(rulebase);
     }
     if (JSON.stringify(rulebase.operators) !== operators.dataset.known) showOperators(rulebase);
@@ -335,12 +337,21 @@ export function mount(element, app) {
       ),
     );
   });
-  store.follow(["state", "colorBy", "palette", "explanation", "cell", "scheme"], ({ state }) => {
-    if (state?.rulebase) paint();
-  });
-  store.follow(["state", "colorBy", "palette", "cell", "symmetric"], ({ state }) => {
-    if (state?.rulebase) keepFocus(words, showWords);
-  });
+  store.follow(
+    ["state", "colorBy", "palette", "explanation", "cell", "scheme", "symmetric"],
+    ({ state, colorBy: output, palette, explanation, cell, scheme, symmetric }) => {
+      if (!state?.rulebase) return;
+      // While a set is dragged the state changes many times a second, and no rule does.
+      const { rules, outputs } = state.rulebase;
+      const sets = outputs.map((one) => one.sets.map(({ name }) => name));
+      const looks = [output, palette, cell, scheme, symmetric];
+      const now = JSON.stringify([rules, sets, state.complaints, explanation, looks]);
+      if (now === painted) return;
+      painted = now;
+      paint();
+      keepFocus(words, showWords);
+    },
+  );
 }
 
 // ---------------------------------------------------------------------- places of rules

@@ -545,7 +545,8 @@ export function mount(element, app) {
     if (state?.rulebase && !held) showOptions();
   });
   store.follow(["state", "variable", "set", "palette", "scheme", "explanation", "view"], ({ state }) => {
-    if (!state?.rulebase) return;
+    // What is dragged has been drawn already.
+    if (!state?.rulebase || held) return;
     draw();
     showNumbers();
   });

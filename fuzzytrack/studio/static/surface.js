@@ -12,7 +12,7 @@ import { makeStage } from "./stage.js";
 export const title = "Surface";
 const HEIGHT = 0.85;
 const HOME = { azimuth: -125, elevation: 30, zoom: 1 };
-const POINTS = [31, 61, 121, 201];
+const POINTS = [41, 61, 121, 201];
 // How far a face reaches below the next one, which hides it; else the ground would shine through.
 const OVERLAP = 0.4;
 const GRAY = [150, 150, 150];
