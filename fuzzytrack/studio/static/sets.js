@@ -25,7 +25,9 @@ export function mount(element, app) {
   const options = html("div", { class: "tools" });
   const table = html("table", { class: "numbers-table" });
   const note = html("p", { class: "hint" });
+  // What is dragged, and what was let go but is not in the state yet.
   let held = null;
+  let released = null;
   let corners = "";
 
   picture.append(curves, handles);
@@ -60,7 +62,7 @@ export function mount(element, app) {
 
   /** The sets as they are, or as the drag that is going on has them. */
   function setsNow() {
-    const draft = new Map(held?.shapes.map((one) => [one.set, one]) ?? []);
+    const draft = new Map((held ?? released)?.shapes.map((one) => [one.set, one]) ?? []);
     return current().sets.map((one) => ({ ...one, ...draft.get(one.name) }));
   }
 
@@ -209,8 +211,9 @@ export function mount(element, app) {
   }
 
   function grab(set, corner, x = 0) {
-    const before = current().sets.find(({ name }) => name === set);
-    held = { before, corner, from: x, shapes: [], all: current().sets };
+    const all = setsNow();
+    const before = all.find(({ name }) => name === set);
+    held = { before, corner, from: x, shapes: [], all };
   }
 
   /** Move what is held: a corner to `value`, or the whole set. */
@@ -244,15 +247,15 @@ export function mount(element, app) {
 
   /** The end of a drag or of keys: one step for undo. */
   function release() {
+    const ended = held;
+    held = null;
     store.set({ dragging: false });
-    if (!held?.shapes.length) {
-      held = null;
-      return;
-    }
-    const { shapes } = held;
-    send(shapes, false).then(() => {
-      if (held?.shapes === shapes) held = null;
+    if (!ended?.shapes.length) return;
+    released = ended;
+    send(ended.shapes, false).then(() => {
+      if (released === ended) released = null;
       draw();
+      showNumbers();
     });
   }
 
@@ -546,7 +549,7 @@ export function mount(element, app) {
   });
   store.follow(["state", "variable", "set", "palette", "scheme", "explanation", "view"], ({ state }) => {
     // What is dragged has been drawn already.
-    if (!state?.rulebase || held) return;
+    if (!state?.rulebase || held || released) return;
     draw();
     showNumbers();
   });
