@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from fuzzytrack.errors import DataError
 from fuzzytrack.recordings.antenna_turn import antenna_of
 from fuzzytrack.recordings.radar_place import RadarPlace
 from fuzzytrack.recordings.scan_rows import ScanRows
@@ -36,6 +37,10 @@ class Scanner(Protocol):
     @property
     def name(self) -> str:
         """Name of the configuration."""
+
+    @property
+    def merges_plots(self) -> bool:
+        """Whether it makes one plot of several."""
 
     def start(self) -> Any:
         """Begin a session that has seen nothing."""
@@ -199,7 +204,8 @@ def run_sectors(
     Raises
     ------
     DataError
-        If the bearings of the first turns do not follow an antenna.
+        If the bearings of the first turns do not follow an antenna, or if the scan tracker merges
+        plots.
     """
     before = last = 0
     for group, parts in groupby(plots, key=lambda pair: pair[0]):
@@ -236,6 +242,11 @@ class SectorRun:
         tentative: bool = False,
         radar: RadarPlace | None = None,
     ) -> None:
+        if scanner.merges_plots:
+            raise DataError(
+                f"`sectors`: configuration {scanner.name} merges plots, which needs whole scans; "
+                "leave `sectors` out, or take part none for extraction"
+            )
         self._scanner, self._sectors, self._period = scanner, sectors, period
         self._tentative, self._radar = tentative, radar
         self._held: list[ScanRows] = []

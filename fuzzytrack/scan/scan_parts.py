@@ -98,6 +98,11 @@ class ScanParts:
         """What a session keeps for the update beside the array of tracks, if anything."""
         return self.update.companion(self.places()["update"])
 
+    @property
+    def merges_plots(self) -> bool:
+        """Whether it makes one plot of several."""
+        return self.extraction.merges
+
     def needing_own(self) -> tuple[str, ...]:
         """Roles whose part needs the position of the radar."""
         return tuple(role for role in self.roles() if getattr(self, role).needs_own)

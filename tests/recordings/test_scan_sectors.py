@@ -1,6 +1,7 @@
 """Plots of a turning antenna, tracked sector by sector and scan by scan."""
 
 import pickle
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,10 +10,11 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from turning_radar import turning_radar
 
-from fuzzytrack import DataError, track_scans
+from fuzzytrack import DataError, load_scanner, track_scans
 from fuzzytrack.recordings.antenna_turn import AntennaTurn, turn_of_antenna
 from fuzzytrack.recordings.scan_rows import ScanRows
 from fuzzytrack.recordings.scan_sectors import Beam, SectorPass
+from fuzzytrack.scan.extraction.merging import Merging
 from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scan_tracker import ScanTracker
 from fuzzytrack.scan.track_reports import TrackReports
@@ -163,6 +165,13 @@ def test_plots_without_bearings_of_their_own():
         track_scans(data, sectors=8)
     with pytest.raises(DataError, match=r"an antenna that turns in 2.5 s"):
         track_scans(data, sectors=8, period=2.5)
+
+
+def test_a_part_that_merges_plots_needs_whole_scans():
+    data, _, _ = turning_radar(0, turns=12)
+    merging = replace(load_scanner("default"), extraction=Merging())
+    with pytest.raises(DataError, match=r"`sectors`: configuration default merges plots"):
+        track_scans(data, merging, sectors=8)
 
 
 @given(st.floats(0.5, 20), st.booleans(), st.floats(-50, 50), st.floats(0, 500))

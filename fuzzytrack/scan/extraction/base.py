@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from fuzzytrack.plugins import Registry
 from fuzzytrack.scan.part import Part
@@ -29,7 +29,17 @@ class ExtractionKernels(NamedTuple):
 
 
 class Extraction(Part):
-    """Chooses the plots of a scan that are used, and may merge some of them."""
+    """Chooses the plots of a scan that are used, and may merge some of them.
+
+    Attributes
+    ----------
+    merges : bool
+        Whether it makes one plot of several. Plots of a turning antenna that wait for a later
+        sector would then be given again without those that were merged into them, so such a part
+        is refused sector by sector.
+    """
+
+    merges: ClassVar[bool] = False
 
     @abstractmethod
     def kernels(self, setting: Setting) -> ExtractionKernels:

@@ -39,6 +39,7 @@ class Merging(Extraction):
     Distances are those to the first plot of each, so that chains of plots do not grow.
     """
 
+    merges = True
     source: ClassVar[str] = "practice; of no use where a radar clusters its echoes, as measured"
 
     distance: float = parameter(10.0, "distance within which plots are merged", "m", least=0,
