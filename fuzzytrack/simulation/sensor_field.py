@@ -164,7 +164,8 @@ class SensorField:
         Raises
         ------
         ValueError
-            If shapes do not fit, there is no run, or `sigma_from` is unknown.
+            If shapes do not fit, there is no run, `sigma_from` is unknown, or a sensor detects the
+            target exactly where it is itself.
 
         Notes
         -----
@@ -182,6 +183,11 @@ class SensorField:
         ever = np.flatnonzero(seen.any(axis=(0, 1)))
         error, detected = self._draw(seen[:, :, ever], runs, noise)
         distance, bearing = self._polar(positions, ever)
+        if sigma_from == "truth" and np.any(detected & (distance == 0)):
+            raise ValueError(
+                "truth: the target is exactly at a sensor, where its plot has no variance across the "
+                "line of sight (Eq. 4.2); move its start, a way-point or the field"
+            )
         away = self.range_sigma[ever] * error[..., 0]
         aside = self.bearing_sigma[ever] * error[..., 1]
         cos, sin = np.cos(bearing), np.sin(bearing)

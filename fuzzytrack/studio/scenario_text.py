@@ -59,7 +59,7 @@ def with_target(text: str, given: Mapping[str, Entry]) -> str:
     if "motion" in given:
         # Numbers of another motion would be refused.
         kept = _OF_MOTION if now.get("motion") == given["motion"] else _OF_EVERY_MOTION
-    drop = [name for name in now if name not in kept]
+    drop = [name for name in now if name not in (*kept, *given)]
     other = {"times": "leg", "leg": "times"}
     drop += [other[name] for name in given if other.get(name) in now]
     return _with_entries(text, "target", given, drop)

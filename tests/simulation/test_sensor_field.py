@@ -170,6 +170,14 @@ def test_impossible_fields(change, message):
         SensorField(**(good | change))
 
 
+def test_a_target_at_a_sensor_is_refused_where_its_variance_is_taken_there():
+    path = [[50.0, -50.0], [100.0, -50.0]]
+    with pytest.raises(ValueError, match="exactly at a sensor.*move its start"):
+        ONE.measure(path, streams(0, 1))
+    plots = ONE.measure(path, streams(0, 1), sigma_from="plot")
+    assert np.all(plots.sigma > 0)
+
+
 def test_impossible_grids_and_measurements():
     with pytest.raises(ValueError, match="n must be at least 1, got 0"):
         sensor_grid(0, 1.0, 1.0, 1.0, 1.0)

@@ -82,6 +82,13 @@ def test_a_motion_is_chosen(page):
     assert "unknown 'loop'" in page.refused("set_motion", motion="loop")
 
 
+def test_a_motion_keeps_the_numbers_that_the_next_one_is_given_too(page):
+    page.ask("open_scenario", name="turn")
+    given = {"speed": 6, "acceleration": 0.01, "radius": 3000}
+    found = page.ask("set_motion", motion="turn-with-angular-acceleration", **given)["state"]
+    assert found["target"].items() >= given.items()
+
+
 def test_a_text_that_is_no_scenario_keeps_the_last(page):
     found = page.ask("set_scenario_text", text="scenario: 1\nname: x\n")["state"]
     assert found["complaints"][0]["message"] == "the scenario lacks the key 'target'"

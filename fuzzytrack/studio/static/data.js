@@ -4,10 +4,10 @@ import { makeChart } from "./chart.js";
 import { html, select } from "./elements.js";
 import { action, group } from "./fields.js";
 import { figure } from "./figure.js";
-import { swatch } from "./lines.js";
 import { even, shown } from "./numbers.js";
 import { chosenTrackers, trackerList } from "./pick.js";
 import { columnsOf, recordingForm } from "./recording.js";
+import { lineButton } from "./resulttable.js";
 import { makeTrackPicture } from "./trackpicture.js";
 
 export const title = "Own data";
@@ -23,7 +23,7 @@ export function mount(element, app) {
   const table = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" });
   const which = select("Track", [], "", (value) => store.set({ trackShown: Number(value) }));
   const axis = select("Axis", [], "", (value) => store.set({ axisShown: Number(value) }));
-  const lines = () => Object.keys(shownTrack(store.now).trackers).map((name, index) => [name, index]);
+  const lines = () => linesOf(store.now).map(({ name, index }) => [name, index]);
   const innovations = makeChart();
   const picture = makeTrackPicture("Recorded track", () => layerOf(store.now));
   const body = html(
@@ -70,14 +70,14 @@ export function mount(element, app) {
     }
   }
 
-  store.follow(["tracked", "trackShown", "axisShown", "scheme", "view"], (now) => {
-    const { tracked, trackShown, axisShown } = now;
+  store.follow(["tracked", "trackShown", "axisShown", "hidden", "scheme", "view"], (now) => {
+    const { tracked, trackShown, axisShown, hidden } = now;
     body.hidden = !tracked;
     empty.hidden = Boolean(tracked);
     if (!tracked) return;
     facts.textContent = factsOf(tracked);
     notes.replaceChildren(...tracked.notes.map((text) => html("li", {}, text)));
-    table.replaceChildren(comparisonTable(tracked));
+    showTable(tracked, hidden);
     which.replaceChildren(...tracked.tracks.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")));
     which.value = String(trackShown);
     axis.replaceChildren(...AXES.slice(0, tracked.axes).map((name, k) => html("option", { value: k }, name)));
@@ -86,30 +86,42 @@ export function mount(element, app) {
     picture.redraw();
   });
   store.follow(["tracked", "trackShown"], () => picture.fit());
+
+  function showTable(tracked, hidden) {
+    const held = [...table.querySelectorAll("button")].indexOf(document.activeElement);
+    table.replaceChildren(comparisonTable(tracked, hidden, app.toggleLine));
+    // The row was drawn anew: the focus goes back to where it was.
+    if (held >= 0) table.querySelectorAll("button")[held]?.focus();
+  }
 }
 
 function shownTrack({ tracked, trackShown }) {
   return tracked?.tracks[trackShown] ?? null;
 }
 
+/** What the trackers that are not hidden made of the track: {name, index, filtered, innovation}. */
+function linesOf(now) {
+  return Object.entries(shownTrack(now).trackers)
+    .map(([name, found], index) => ({ name, index, ...found }))
+    .filter(({ name }) => !now.hidden.includes(name));
+}
+
 function layerOf(now) {
   const track = shownTrack(now);
   if (!track) return {};
   const coasted = track.plots.map((point) => point.some((value) => value === null));
-  const lines = Object.entries(track.trackers).map(([name, { filtered }], index) => ({
-    name, index, points: filtered, coasted,
-  }));
+  const lines = linesOf(now).map(({ name, index, filtered }) => ({ name, index, points: filtered, coasted }));
   return { time: track.time, truth: track.truth ?? [], plots: track.plots, lines };
 }
 
 function innovationsOf(now) {
-  const { time, trackers } = shownTrack(now);
+  const { time } = shownTrack(now);
   return {
     name: "Innovations, plot minus prediction",
     x: { label: "time (s)" },
     y: { label: "innovation (m)" },
     limits: [{ y: 0, label: "" }],
-    series: Object.entries(trackers).map(([name, { innovation }], index) => ({
+    series: linesOf(now).map(({ name, index, innovation }) => ({
       name,
       index,
       x: time,
@@ -126,7 +138,7 @@ function factsOf({ name, plots, tracks, sigma, comparison, shown: drawn }) {
   return words.join(" · ");
 }
 
-function comparisonTable({ comparison: { columns, rows } }) {
+function comparisonTable({ comparison: { columns, rows } }, hidden, toggle) {
   return html(
     "table",
     { class: "result-table" },
@@ -147,11 +159,11 @@ function comparisonTable({ comparison: { columns, rows } }) {
       rows.map((row, index) =>
         html(
           "tr",
-          { class: row.mark },
+          { class: `${row.mark} ${hidden.includes(row.name) ? "off" : ""}`.trim() },
           html(
             "th",
             { scope: "row" },
-            html("div", {}, swatch(index), row.name, row.mark ? html("span", { class: "mark" }, row.mark) : null),
+            html("div", {}, lineButton(row.name, index, hidden.includes(row.name), toggle), row.mark ? html("span", { class: "mark" }, row.mark) : null),
           ),
           ...columns.map(([key]) => cellOf(row, key)),
         ),

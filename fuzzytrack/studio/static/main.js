@@ -56,6 +56,11 @@ const app = {
   show: (change) => store.set({ view: "design", ...change }),
   wantedScheme: () => localStorage.getItem(SCHEME),
   setScheme,
+  /** Show or hide the lines of a tracker in all pictures. */
+  toggleLine: (name) => {
+    const { hidden } = store.now;
+    store.set({ hidden: hidden.includes(name) ? hidden.filter((each) => each !== name) : [...hidden, name] });
+  },
 };
 Object.assign(app, followPoint(app), { scenario: followScenario(app) });
 

@@ -51,7 +51,7 @@ export function recordingForm({ store, socket, say }, taken) {
     title: "Standard deviation of the plots; estimated from them if it is left empty",
     empty: true,
   });
-  sigma.input.placeholder = "from the plots";
+  sigma.input.placeholder = "estimated";
   const problem = html("p", { class: "failed", role: "alert" });
   const known = html("p", { class: "muted" });
   const element = group(

@@ -102,11 +102,6 @@ function mountAll(element, app) {
     ),
   );
 
-  function toggle(name) {
-    const { hidden } = store.now;
-    store.set({ hidden: hidden.includes(name) ? hidden.filter((each) => each !== name) : [...hidden, name] });
-  }
-
   function sortBy(key) {
     const { sorting } = store.now;
     store.set({ sorting: { key, down: sorting.key === key ? !sorting.down : false } });
@@ -115,7 +110,7 @@ function mountAll(element, app) {
   function drawTable({ results, hidden, sorting }) {
     if (!results) return;
     const held = table.contains(document.activeElement) ? focusOf(table) : -1;
-    table.replaceChildren(resultTable(results, hidden, toggle, sorting, sortBy));
+    table.replaceChildren(resultTable(results, hidden, app.toggleLine, sorting, sortBy));
     if (held >= 0) table.querySelectorAll("button")[held]?.focus();
   }
 

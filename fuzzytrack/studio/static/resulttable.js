@@ -81,27 +81,31 @@ function sorter(text, key, sorting, sortBy) {
   return html("button", { type: "button", class: "link", onclick: () => sortBy(key) }, `${text}${sign}`);
 }
 
-function rowOf(row, columns, hidden, toggle) {
-  const off = hidden.includes(row.name);
-  const name = html(
+/** The name of a tracker with its line, which it shows or hides in the pictures. */
+export function lineButton(name, index, off, toggle) {
+  return html(
     "button",
     {
       type: "button",
       class: "link",
       "aria-pressed": String(!off),
-      title: `${off ? "Show" : "Hide"} ${row.name} in the pictures`,
-      onclick: () => toggle(row.name),
+      title: `${off ? "Show" : "Hide"} ${name} in the pictures`,
+      onclick: () => toggle(name),
     },
-    swatch(row.index),
-    html("span", {}, row.name),
+    swatch(index),
+    html("span", {}, name),
   );
+}
+
+function rowOf(row, columns, hidden, toggle) {
+  const off = hidden.includes(row.name);
   return html(
     "tr",
     { class: `${row.mark ?? ""} ${off ? "off" : ""}`.trim() },
     html(
       "th",
       { scope: "row" },
-      html("div", {}, name, row.mark ? html("span", { class: "mark" }, WORDS[row.mark] ?? row.mark) : null),
+      html("div", {}, lineButton(row.name, row.index, off, toggle), row.mark ? html("span", { class: "mark" }, WORDS[row.mark] ?? row.mark) : null),
     ),
     ...columns.map(([key]) => cellOf(row, key)),
   );

@@ -72,14 +72,15 @@ export function mount(element, app) {
     seed.show(wanted);
   });
   store.follow(["job"], ({ job }) => {
-    const running = job?.state === "running";
+    const own = job?.kind === "run";
+    const running = own && job.state === "running";
     start.hidden = running;
     cancel.hidden = !running;
     bar.hidden = !running;
     if (running && job.done) bar.value = job.done / job.of;
     else bar.removeAttribute("value");
-    words.textContent = job ? told(job) : "";
-    words.classList.toggle("failed", job?.state === "failed");
+    words.textContent = own ? told(job) : "";
+    words.classList.toggle("failed", own && job.state === "failed");
   });
   store.follow(["scenario"], ({ scenario }) => {
     if (!scenario) return;

@@ -65,7 +65,14 @@ export function targetForm({ store, scenario }, points, writePoints) {
       }),
     ]),
   );
-  const byMotion = html("div", { class: "form-grid" }, Object.values(numbers).map((field) => field.element));
+  const place = ["x", "y"].map((axis, k) =>
+    numberField(`Start ${axis}`, "m", (value) => setStart(start()[0].map((old, which) => (which === k ? value : old)))),
+  );
+  const byMotion = html(
+    "div",
+    { class: "form-grid" },
+    [...Object.values(numbers), ...place].map((field) => field.element),
+  );
   const note = html("p", { class: "note" });
   const element = group(
     "Target",
@@ -82,9 +89,23 @@ export function targetForm({ store, scenario }, points, writePoints) {
     scenario.change("set_motion", { motion, ...Object.fromEntries(kept), ...change });
   }
 
+  /** Where a maneuver begins, as a list of one point; empty if the target is something else. */
+  function start() {
+    const now = store.now.scenario;
+    return now && targetKind(now) === "motion" ? [now.target.start ?? [0, 0]] : [];
+  }
+
+  function setStart(point) {
+    const { motion } = store.now.scenario.target;
+    return scenario.change("set_motion", { motion, start: point });
+  }
+
   function setKind(value) {
     if (value === "waypoints") writePoints(pointsOf(store.now.scenario));
-    else if (TAKES[value]) setMotion(value);
+    else if (TAKES[value]) {
+      // A new maneuver begins where the target did.
+      setMotion(value, start().length ? {} : { start: pointsOf(store.now.scenario)[0] });
+    }
   }
 
   function setPoints(change) {
@@ -134,6 +155,7 @@ export function targetForm({ store, scenario }, points, writePoints) {
         field.element.hidden = !TAKES[now.target.motion]?.includes(key);
         field.show(now.target[key]);
       }
+      place.forEach((field, k) => field.show(start()[0][k]));
     }
     if (what === "waypoints") showPace(now);
     list.show(points());
@@ -166,7 +188,7 @@ export function targetForm({ store, scenario }, points, writePoints) {
     period.show(now.target.period ?? next - begin);
   }
 
-  return { element, show, timing };
+  return { element, show, start, setStart, timing };
 }
 
 function nameOf({ target, name }) {

@@ -11,9 +11,10 @@ const STEP = 8;
 
 /**
  * The layer of the map. `read()` gives {points, between}: the way-points, and a place in the middle
- * of each leg; `write(points)` changes them, `draft(points)` shows them while they are dragged.
+ * of each leg; `write(points)` changes them, `draft(points)` shows them while they are dragged;
+ * `named(k)` is what number k from 1 is called.
  */
-export function waypointLayer({ map, read, write, draft }) {
+export function waypointLayer({ map, read, write, draft = () => {}, named = (k) => `Way-point ${k}` }) {
   const route = svg("polyline", { class: "route" });
   const middles = svg("g", {});
   const handles = svg("g", {});
@@ -33,8 +34,8 @@ export function waypointLayer({ map, read, write, draft }) {
     all.forEach(([x, y], k) => {
       const handle = handles.children[k];
       put(handle, place, x, y);
-      handle.setAttribute("aria-label", `Way-point ${k + 1}: x ${shown(x, 6)} m, y ${shown(y, 6)} m`);
-      handle.lastChild.textContent = String(k + 1);
+      handle.setAttribute("aria-label", `${named(k + 1)}: x ${shown(x, 6)} m, y ${shown(y, 6)} m`);
+      handle.lastChild.textContent = named(k + 1).replace("Way-point ", "");
     });
     const between = dragged ? [] : read().between;
     fit(middles, between.length, () => handleOf("between"));

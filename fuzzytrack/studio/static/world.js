@@ -42,6 +42,14 @@ export function mount(element, app) {
       draft: (all) => scenario.draft("set_waypoints", { points: all, ...target.timing() }),
     }),
   );
+  map.add(
+    waypointLayer({
+      map,
+      named: () => "Start",
+      read: () => ({ points: drafted ? [] : target.start(), between: [] }),
+      write: ([start]) => target.setStart(start),
+    }),
+  );
   map.picture.addEventListener("keydown", (event) => {
     if (drafted === null || (event.key !== "Enter" && event.key !== "Escape")) return;
     event.preventDefault();
@@ -135,14 +143,19 @@ export function mount(element, app) {
     writePoints([...drafted, [x, y].map((value) => Math.round(value / step) * step)]);
   }
 
+  /** Whether the start of the track can be dragged; else it is marked. */
+  function hasHandles() {
+    return points().length + target.start().length > 0;
+  }
+
   function drawTrack(place) {
     const all = drafted === null || drafted.length > 1 ? truthOf(store.now.scenario) : [];
     const at = all.map(([x, y]) => [place.x(x), place.y(y)]);
     const dots = at.length <= MOST_DOTS ? at : [];
     track.replaceChildren(
       svg("path", { class: "truth", d: pathOf(at) }),
+      ...(hasHandles() ? [] : at.slice(0, 1)).map(([x, y]) => svg("path", { class: "scan", d: `M${x - 5} ${y - 5}h10v10h-10z` })),
       ...dots.map(([cx, cy]) => svg("circle", { class: "scan", cx, cy, r: 2 })),
-      ...at.slice(0, 1).map(([x, y]) => svg("path", { class: "start", d: `M${x - 5} ${y - 5}h10v10h-10z` })),
     );
   }
 
