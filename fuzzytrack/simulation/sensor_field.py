@@ -185,8 +185,8 @@ class SensorField:
         distance, bearing = self._polar(positions, ever)
         if sigma_from == "truth" and np.any(detected & (distance == 0)):
             raise ValueError(
-                "truth: the target is exactly at a sensor, where its plot has no variance across the "
-                "line of sight (Eq. 4.2); move its start, a way-point or the field"
+                "truth: the target is exactly at a sensor, where its plot has no variance across "
+                "the line of sight (Eq. 4.2); move its start, a way-point or the field"
             )
         away = self.range_sigma[ever] * error[..., 0]
         aside = self.bearing_sigma[ever] * error[..., 1]

@@ -172,7 +172,7 @@ def test_impossible_fields(change, message):
 
 def test_a_target_at_a_sensor_is_refused_where_its_variance_is_taken_there():
     path = [[50.0, -50.0], [100.0, -50.0]]
-    with pytest.raises(ValueError, match="exactly at a sensor.*move its start"):
+    with pytest.raises(ValueError, match=r"exactly at a sensor.*move its start"):
         ONE.measure(path, streams(0, 1))
     plots = ONE.measure(path, streams(0, 1), sigma_from="plot")
     assert np.all(plots.sigma > 0)
