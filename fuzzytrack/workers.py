@@ -73,10 +73,12 @@ def process_pool(jobs: int) -> ProcessPoolExecutor:
 
 def end_processes(pool: ProcessPoolExecutor) -> None:
     """End the processes of a pool at once, whatever they do; what they were doing fails."""
-    # Python 3.14 has `terminate_workers` for this.
-    for process in list((pool._processes or {}).values()):
-        process.kill()
+    # Python 3.14 has `terminate_workers` for this. The pool forgets its processes when it is shut
+    # down, and may begin one until then.
+    processes = pool._processes
     pool.shutdown(wait=False, cancel_futures=True)
+    for process in list((processes or {}).values()):
+        process.kill()
 
 
 @contextmanager

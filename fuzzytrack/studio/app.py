@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from starlette.applications import Starlette
 from starlette.datastructures import Headers, MutableHeaders
@@ -16,9 +17,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from fuzzytrack.studio.access import HEADERS, Access
-from fuzzytrack.studio.connection import Connection
-from fuzzytrack.studio.pages import Studio
 from fuzzytrack.studio.threads import Threads
+
+if TYPE_CHECKING:
+    from fuzzytrack.studio.pages import Studio
 
 __all__ = ["make_app"]
 
@@ -32,13 +34,14 @@ _TYPES = {
 }
 
 
-def make_app(studio: Studio, access: Access) -> ASGIApp:
+def make_app(studio: Callable[[], Studio], access: Access) -> ASGIApp:
     """Make the application.
 
     Parameters
     ----------
-    studio : Studio
-        What the pages work on; it is closed with the application.
+    studio : callable
+        Gives what the pages work on, which is closed with the application. It is called with the
+        first socket: what it imports takes longer than all else at the start.
     access : Access
         Who may use it.
     """
@@ -52,12 +55,15 @@ def make_app(studio: Studio, access: Access) -> ASGIApp:
         return _file(name) if _NAME.fullmatch(name) else _missing()
 
     async def socket(websocket: WebSocket) -> None:
-        await Connection(websocket, studio, threads).serve()
+        found = await threads.run(studio)
+        from fuzzytrack.studio.connection import Connection
+
+        await Connection(websocket, found, threads).serve()
 
     @contextlib.asynccontextmanager
     async def life(app: Starlette) -> AsyncIterator[None]:
         yield
-        studio.close()
+        studio().close()
 
     routes = [
         Route("/", page),

@@ -124,6 +124,13 @@ class Arguments:
             raise ValueError(f"{name}: needs an object with a number for each name")
         return {str(key): _number(f"{name}: {key[:40]}", each) for key, each in found.items()}
 
+    def texts_by_name(self, name: str) -> dict[str, str]:
+        """An object of texts."""
+        found = self._given.get(name)
+        if not isinstance(found, dict) or not all(isinstance(v, str) for v in found.values()):
+            raise ValueError(f"{name}: needs an object with a text for each name")
+        return found
+
     def _missing(self, name: str, default: Any, kind: str) -> bool:
         if name in self:
             return False

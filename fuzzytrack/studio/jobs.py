@@ -51,6 +51,7 @@ class Job:
         self._share = 0.0
         self._begun = self._heard = time.monotonic()
         self._reported = 0.0
+        self._ended: float | None = None
         self._lock = threading.Lock()
 
     @property
@@ -90,7 +91,7 @@ class Job:
         with self._lock:
             if not self.running:
                 return False
-            self.state, self.error = state, error
+            self.state, self.error, self._ended = state, error, time.monotonic()
         self._report(self, False)
         return True
 
@@ -100,11 +101,12 @@ class Job:
             if not self.running:
                 return
             self.results, self._share, self.state = results, 1.0, "done"
+            self._ended = time.monotonic()
         self._report(self, True)
 
     def as_json(self, results: bool) -> dict[str, Any]:
         """The job as the page is told of it."""
-        spent = time.monotonic() - self._begun
+        spent = (self._ended or time.monotonic()) - self._begun
         left = spent * (1 - self._share) / self._share if self._share > 0 else None
         return {
             "id": self.number,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import secrets
 import threading
 import time
@@ -132,20 +131,15 @@ class Studio:
 
     Parameters
     ----------
-    folder : str or path
+    folder : Folder
         Files of the user.
     command : callable, optional
         Called with the scenario, the trackers, runs and seed of an experiment; gives the command
         that does the same.
-
-    Raises
-    ------
-    FolderError
-        If there is no such folder.
     """
 
-    def __init__(self, folder: str | os.PathLike[str], command: RunCommand | None = None) -> None:
-        self.folder = Folder(folder)
+    def __init__(self, folder: Folder, command: RunCommand | None = None) -> None:
+        self.folder = folder
         self.command = command
         self.jobs = Jobs()
         self.uploads = Uploads(self.folder)

@@ -8,10 +8,8 @@ from typing import Any
 
 from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.rulebase import RuleBase
-from fuzzytrack.fuzzy.text_edits import EditedText
 from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
-from fuzzytrack.studio.commands import edited
 from fuzzytrack.studio.complaints import Complaint
 from fuzzytrack.studio.folder import Folder
 from fuzzytrack.studio.handlers import Handler
@@ -80,16 +78,35 @@ def _edit(
 
 def set_cell(page: Page, given: Arguments) -> Answer:
     """Change a cell of the table."""
+    says, symmetric = given.text("text"), given.flag("symmetric")
+    where = _where(page, given)
+    return _edit(page, "cell", {"where": where, "says": says, "symmetric": symmetric})
+
+
+def set_weight(page: Page, given: Arguments) -> Answer:
+    """Change the confidence of a rule, or of what it concludes about one output."""
+    arguments = {
+        "where": _where(page, given),
+        "confidence": given.number("weight"),
+        "symmetric": given.flag("symmetric"),
+    }
+    if "output" in given:
+        arguments["output"] = given.text("output")
+    return _edit(page, "confidence", arguments)
+
+
+def _where(page: Page, given: Arguments) -> dict[str, str]:
+    """Conditions of a rule: of a cell by row and column, of any rule by its place from 0."""
     rules = page.session.reading.rules
     layout = rules.layout
+    if "index" in given:
+        return dict(rules.rules[given.whole("index", 0, len(rules.rules) - 1)].conditions)
     if layout is None:
-        raise ValueError("row: the rules are a list, not a table; change them by their index")
-    where = {
+        raise ValueError("index: is missing; the rules are a list, not a table")
+    return {
         layout.rows: _set_at(given, "row", rules.input(layout.rows).set_names),
         layout.columns: _set_at(given, "column", rules.input(layout.columns).set_names),
     }
-    says, symmetric = given.text("text"), given.flag("symmetric")
-    return _edit(page, "cell", {"where": where, "says": says, "symmetric": symmetric})
 
 
 def _set_at(given: Arguments, name: str, sets: tuple[str, ...]) -> str:
@@ -101,11 +118,27 @@ def _set_at(given: Arguments, name: str, sets: tuple[str, ...]) -> str:
 
 
 def set_rule(page: Page, given: Arguments) -> Answer:
-    """Change the conclusions of a rule, by its place in the list from 0."""
-    rules = page.session.reading.rules.rules
-    rule = rules[given.whole("index", 0, len(rules) - 1)]
-    arguments = {"where": dict(rule.conditions), "says": given.text("text")}
+    """Change the conclusions of a rule, by its place from 0."""
+    arguments = {"where": _where(page, given), "says": given.text("text")}
     return _edit(page, "cell", {**arguments, "symmetric": given.flag("symmetric")})
+
+
+def add_rule(page: Page, given: Arguments) -> Answer:
+    """Add a rule to the end of a list."""
+    then = [
+        {
+            "output": each.text("output"),
+            "set": each.text("set"),
+            "confidence": each.number("confidence", 1.0),
+        }
+        for each in given.objects("then")
+    ]
+    return _edit(page, "add-rule", {"where": given.texts_by_name("if"), "then": then})
+
+
+def remove_rule(page: Page, given: Arguments) -> Answer:
+    """Remove a rule from a list, by its place from 0."""
+    return _edit(page, "remove-rule", {"where": _where(page, given)})
 
 
 def set_shape(page: Page, given: Arguments) -> Answer:
@@ -122,29 +155,33 @@ def set_shape(page: Page, given: Arguments) -> Answer:
 
 def set_shapes(page: Page, given: Arguments) -> Answer:
     """Change several sets of a variable at once, as neighbors that share a corner."""
-    gesture = page.gesture(given.flag("draft"))
-    common = {
-        "variable": given.text("variable"),
-        "apart": given.choice("shared", _SHARED, "both") == "apart",
-        "symmetric": given.flag("symmetric"),
-    }
-    also: dict[tuple[str, str], None] = {}
-    text = page.session.texts.rules.text
+    shapes = []
     for each in given.objects("shapes"):
-        arguments = {**common, "set": each.text("set"), "parameters": each.numbers("parameters")}
+        shapes.append({"set": each.text("set"), "parameters": each.numbers("parameters")})
         if "shape" in each:
-            arguments["shape"] = each.choice("shape", tuple(SHAPES))
-        new = edited(text, "shape", arguments)
-        assert isinstance(new, EditedText)  # the command is one of rule bases
-        also |= dict.fromkeys(new.also)
-        text = str(new)
-    page.session.replace("rules", text, gesture)
-    return {**changed(page), "also": [{"variable": v, "set": s} for v, s in also]}
+            shapes[-1]["shape"] = each.choice("shape", tuple(SHAPES))
+    arguments = {
+        "variable": given.text("variable"),
+        "shapes": shapes,
+        "symmetric": given.flag("symmetric"),
+        "apart": _is_apart(given),
+    }
+    return _edit(page, "shapes", arguments, page.gesture(given.flag("draft")))
+
+
+def write_out(page: Page, given: Arguments) -> Answer:
+    """Give a variable sets of its own, which it shares by an anchor."""
+    return _edit(page, "write-out", {"variable": given.text("variable")})
+
+
+def _is_apart(given: Arguments) -> bool:
+    """Whether sets that are shared are written out first."""
+    return bool(given.choice("shared", _SHARED, "both") == "apart")
 
 
 def _set_named(given: Arguments) -> dict[str, Any]:
-    apart = given.choice("shared", _SHARED, "both") == "apart"
-    return {"variable": given.text("variable"), "set": given.text("set"), "apart": apart}
+    names = {name: given.text(name) for name in ("variable", "set")}
+    return {**names, "apart": _is_apart(given)}
 
 
 def add_set(page: Page, given: Arguments) -> Answer:
@@ -247,10 +284,14 @@ def _kind(folder: Folder, name: str) -> str:
 HANDLERS = {
     "set_cell": Handler(set_cell, ("row", "column", "text", "symmetric")),
     "set_rule": Handler(set_rule, ("index", "text", "symmetric")),
+    "set_weight": Handler(set_weight, ("row", "column", "index", "weight", "output", "symmetric")),
+    "add_rule": Handler(add_rule, ("if", "then")),
+    "remove_rule": Handler(remove_rule, ("index",)),
     "set_shape": Handler(
         set_shape, ("variable", "set", "shape", "parameters", "shared", "symmetric", "draft")
     ),
     "set_shapes": Handler(set_shapes, ("variable", "shapes", "shared", "symmetric", "draft")),
+    "write_out": Handler(write_out, ("variable",)),
     "add_set": Handler(add_set, ("variable", "set", "shape", "parameters", "shared", "like")),
     "remove_set": Handler(remove_set, ("variable", "set", "shared", "with_rules")),
     "rename_set": Handler(rename_set, ("variable", "set", "name", "shared")),

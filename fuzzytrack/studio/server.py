@@ -7,15 +7,20 @@ import os
 import socket
 import threading
 from collections.abc import Callable
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 import uvicorn
 
 from fuzzytrack.studio.access import Access, check_token, new_token
 from fuzzytrack.studio.app import make_app
+from fuzzytrack.studio.folder import Folder
 from fuzzytrack.studio.limits import MESSAGE_BYTES
-from fuzzytrack.studio.pages import RunCommand, Studio
 
-__all__ = ["listen", "make_server", "serve"]
+if TYPE_CHECKING:
+    from fuzzytrack.studio.pages import Studio
+
+__all__ = ["StudioOnce", "listen", "make_server", "serve"]
 
 LOCAL = "127.0.0.1"
 # A page that is open finds the server again at the same port after a start.
@@ -29,7 +34,7 @@ def serve(
     port: int | None = None,
     token: str | None = None,
     started: Callable[[str], None],
-    command: RunCommand | None = None,
+    command: Callable[..., str] | None = None,
 ) -> None:
     """Serve the studio until it is interrupted.
 
@@ -46,7 +51,7 @@ def serve(
     started : callable
         Called with the address of the page as soon as it can be opened.
     command : callable, optional
-        See `Studio`.
+        See `fuzzytrack.studio.pages.Studio`.
 
     Raises
     ------
@@ -59,7 +64,7 @@ def serve(
             "token of your own too"
         )
     token = new_token() if token is None else check_token(token)
-    studio = Studio(folder, command)
+    studio = StudioOnce(Folder(folder), command)
     with listen(host or LOCAL, port) as listening:
         access = Access(host or LOCAL, listening.getsockname()[1], token)
         server = make_server(studio, access)
@@ -69,7 +74,38 @@ def serve(
             server.run(sockets=[listening])
 
 
-def make_server(studio: Studio, access: Access) -> uvicorn.Server:
+class StudioOnce:
+    """Makes the studio when it is called first; the server listens before.
+
+    Parameters
+    ----------
+    folder : Folder
+    command : callable, optional
+        As for `fuzzytrack.studio.pages.Studio`.
+    """
+
+    def __init__(self, folder: Folder, command: Callable[..., str] | None = None) -> None:
+        self._given = folder, command
+        self._lock = threading.Lock()
+        self._made: Studio | None = None
+
+    def __call__(self) -> Studio:
+        """The studio."""
+        with self._lock:
+            if self._made is None:
+                from fuzzytrack.studio.pages import Studio
+
+                self._made = Studio(*self._given)
+            return self._made
+
+    def warm(self) -> None:
+        """Import and do once what takes long for the first time."""
+        self()
+        import_module("fuzzytrack.studio.connection")
+        self().warm()
+
+
+def make_server(studio: Callable[[], Studio], access: Access) -> uvicorn.Server:
     """Make the server; it is given a socket that listens."""
     config = uvicorn.Config(
         make_app(studio, access),

@@ -27,7 +27,7 @@ class Threads:
     def __init__(self) -> None:
         self._stuck = 0
 
-    async def run(self, function: Callable[[], T], seconds: float = SECONDS) -> T:
+    async def run(self, function: Callable[[], T]) -> T:
         """What a function returns, or raises, in a thread of its own.
 
         Raises
@@ -50,14 +50,14 @@ class Threads:
 
         threading.Thread(target=work, daemon=True).start()
         try:
-            async with asyncio.timeout(seconds):
+            async with asyncio.timeout(SECONDS):
                 return await asyncio.shield(future)
         except TimeoutError:
             if future.done():
                 raise
             self._stuck += 1
             future.add_done_callback(self._ended)
-            raise ValueError(f"this took longer than {seconds:g} s, and was given up") from None
+            raise ValueError(f"this took longer than {SECONDS:g} s, and was given up") from None
 
     def _ended(self, future: asyncio.Future[T]) -> None:
         self._stuck -= 1

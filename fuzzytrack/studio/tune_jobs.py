@@ -6,15 +6,16 @@ import contextlib
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.studio.jobs import Job, Work
 from fuzzytrack.studio.recorded import Recorded, naming
 from fuzzytrack.studio.uploads import check_plots
-from fuzzytrack.tuning.tuned import Tuned
-from fuzzytrack.tuning.tuner import tune
+
+if TYPE_CHECKING:
+    from fuzzytrack.tuning.tuned import Tuned
 
 __all__ = ["Tuning", "tune_work"]
 
@@ -48,6 +49,8 @@ def tune_work(tuning: Tuning) -> Work:
     """The work of a job that tunes."""
 
     def work(job: Job, pool: ProcessPoolExecutor) -> dict[str, Any]:
+        from fuzzytrack.tuning.tuner import tune
+
         data, own = tuning.data, {}
         with contextlib.ExitStack() as stack:
             if isinstance(data, Recorded):

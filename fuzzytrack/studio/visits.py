@@ -21,7 +21,7 @@ __all__ = ["visited_cells", "visited_gains"]
 _CELLS = 41
 # Runs and plots that are followed; plain Python takes 0.1 ms for a plot.
 _MOST_RUNS, _MOST_PLOTS = 200, 20_000
-_DIGITS = 2
+_DIGITS = 3
 
 
 def visited_cells(run: Run | None, rules: RuleBase) -> Mapping[str, Any]:
@@ -58,7 +58,7 @@ def visited_cells(run: Run | None, rules: RuleBase) -> Mapping[str, Any]:
 
 
 def visited_gains(run: Run, rules: RuleBase) -> list[list[float]]:
-    """Gains α, β that the tracker of `visited_cells` used, to two digits, and how often."""
+    """Gains α, β that the tracker of `visited_cells` used, to three digits, and how often."""
     found = _followed(run, rules)
     if found is None:
         return []

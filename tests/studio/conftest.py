@@ -70,11 +70,11 @@ class Server:
 
     def __init__(self, folder):
         from fuzzytrack.studio.access import Access
-        from fuzzytrack.studio.pages import Studio
-        from fuzzytrack.studio.server import listen, make_server
+        from fuzzytrack.studio.folder import Folder
+        from fuzzytrack.studio.server import StudioOnce, listen, make_server
 
         self.folder = folder
-        self.studio = Studio(folder)
+        self.studio = StudioOnce(Folder(folder))
         self.listening = listen("127.0.0.1", 0)
         self.port = self.listening.getsockname()[1]
         self.host = f"127.0.0.1:{self.port}"

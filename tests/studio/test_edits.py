@@ -41,11 +41,13 @@ def test_edits_change_the_text_and_can_be_undone(page):
                       shared="apart")  # fmt: skip
     assert answer["also"] == []
     page.ask("set_operator", operator="and", value="min")
-    assert page.ask("rename_set", variable="damping", set="L", name="large")["state"]["undo"] == 5
-    for _ in range(5):
+    weighed = page.ask("set_weight", row=6, column=6, weight=0.25)["state"]
+    assert weighed["rulebase"]["rules"]["cells"][6][6]["weight"] == 0.25
+    assert page.ask("rename_set", variable="damping", set="L", name="large")["state"]["undo"] == 6
+    for _ in range(6):
         found = page.ask("undo")["state"]
-    assert (found["text"], found["undo"], found["redo"]) == (before, 0, 5)
-    assert page.ask("redo")["state"]["redo"] == 4
+    assert (found["text"], found["undo"], found["redo"]) == (before, 0, 6)
+    assert page.ask("redo")["state"]["redo"] == 5
 
 
 def test_a_drag_is_undone_as_one(page):
@@ -128,6 +130,11 @@ def test_a_list_of_rules_and_one_input_are_shown(page):
     assert rule["if"]
     changed = page.ask("set_rule", index=0, text=rule["text"])["state"]
     assert changed["rulebase"] == rules
+    then = rule["parts"]
+    removed = page.ask("remove_rule", index=0)["state"]["rulebase"]["rules"]["rules"]
+    assert removed == rules["rules"]["rules"][1:]
+    added = page.ask("add_rule", **{"if": rule["if"], "then": then})["state"]
+    assert added["rulebase"]["rules"]["rules"][-1]["parts"] == then
     rules = page.ask("open", name="omega-schedule")["state"]["rulebase"]
     assert len(rules["inputs"]) == 1
     found = page.ask("surface", outputs=rules["surfaces"][:1], columns=9, rows=9)
