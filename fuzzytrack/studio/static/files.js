@@ -107,7 +107,9 @@ export function mount(element, app) {
   }
 
   async function saveTo(file, overwrite) {
-    const done = await app.edit("save", { name: file, overwrite }, ({ message }) => {
+    const done = await app.edit("save", { name: file, overwrite }, async ({ message }) => {
+      // Another page may have made it meanwhile.
+      store.set(await socket.send("files"));
       const { files, state } = store.now;
       const there = file === state.file || files.some(({ name: one }) => one === file);
       if (overwrite || !there) say(message, "error");
