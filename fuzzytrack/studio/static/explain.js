@@ -3,7 +3,7 @@
 import { html } from "./elements.js";
 import { icon } from "./icons.js";
 import { shown, tidy, typed } from "./numbers.js";
-import { placeKey } from "./rules.js";
+import { placeKey } from "./cells.js";
 import { axesOf, outputsOf, piecesOf, signOf } from "./rulebase.js";
 
 export const title = "Explain";

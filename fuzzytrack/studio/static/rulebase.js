@@ -83,13 +83,6 @@ export function withShare(cell, outputs, output, set) {
   );
 }
 
-/** Text of a cell with one confidence for all that it says. */
-export function withConfidence(cell, outputs, sure) {
-  return textOf(outputs, (name) =>
-    consequents(cell, name).map(({ set }) => ({ set, confidence: sure })),
-  );
-}
-
 /** The short form of a cell where it is enough, else that by output. */
 function textOf(outputs, saidOf) {
   const said = outputs.map((name) => [name, saidOf(name)]).filter(([, parts]) => parts.length);

@@ -1,14 +1,13 @@
 /* The rules: a table of words colored by consequent, or a list; edited cell by cell. */
 
-import { color, css, ink, mix, shareOf, token } from "./colors.js";
-import { check, html, select } from "./elements.js";
-import { SvgPen } from "./pens.js";
-import { pictureMenu } from "./pictures.js";
 import {
-  consequents, outputsOf, piecesOf, variable, withConfidence, withShare, withWord,
-} from "./rulebase.js";
+  listRows, listSlots, placeKey, spoken, tableFile, tableRows, tableSlots, tint, write,
+} from "./cells.js";
+import { html, select } from "./elements.js";
+import { pictureMenu } from "./pictures.js";
+import { consequents, outputsOf, piecesOf, variable, withWord } from "./rulebase.js";
 import { complaintRow } from "./text.js";
-import { typed } from "./numbers.js";
+import { showWords } from "./words.js";
 
 export const title = "Rules";
 
@@ -112,17 +111,8 @@ export function mount(element, app) {
     const sets = variable(state.rulebase, output).sets.map(({ name }) => name);
     const [said] = consequents(slot.rule(state.rulebase.rules), output);
     const set = sets[sets.indexOf(said?.set) + step];
-    if (set) say(slot, output, set);
-  }
-
-  function say(slot, output, set) {
-    const { rulebase } = store.now.state;
-    change(slot, withWord(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
-  }
-
-  function share(slot, output, set) {
-    const { rulebase } = store.now.state;
-    change(slot, withShare(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
+    const { rulebase } = state;
+    if (set) change(slot, withWord(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
   }
 
   function change(slot, text, refused) {
@@ -206,80 +196,6 @@ export function mount(element, app) {
 
   // ------------------------------------------------------------------ below the grid
 
-  function showWords() {
-    const { state, cell, colorBy: output, palette, symmetric } = store.now;
-    const { rulebase } = state;
-    const slot = slots.find(({ key: one }) => one === cell);
-    if (!slot) {
-      words.replaceChildren(html("p", { class: "hint" }, "Choose a cell, then its words here; or type in the cell."));
-      return;
-    }
-    const rule = slot.rule(rulebase.rules);
-    words.replaceChildren(
-      html("div", { class: "where" }, html("b", {}, slot.name), html("span", { class: "mono" }, rule.text)),
-      ...outputsOf(rulebase).map((name) => wordRow(slot, rule, variable(rulebase, name), palette, output)),
-      html(
-        "div",
-        { class: "word-row" },
-        html("span", { class: "name" }, "confidence"),
-        sureBox(slot, rule),
-        html("span", { class: "space" }),
-        rulebase.rules.form === "table"
-          ? check("symmetric", symmetric, (on) => store.set({ symmetric: on }),
-              "Give the cell mirrored through the middle of the table the same words")
-          : null,
-      ),
-    );
-  }
-
-  function wordRow(slot, rule, target, palette) {
-    const said = consequents(rule, target.name).map(({ set }) => set);
-    return html(
-      "div",
-      { class: "word-row", role: "group", "aria-label": target.name },
-      html("span", { class: "name", title: target.label }, target.name),
-      html(
-        "div",
-        { class: "chips" },
-        target.sets.map(({ name }) => {
-          const paint = color(palette, shareOf(target, name));
-          const chip = html(
-            "button",
-            {
-              type: "button",
-              class: "chip",
-              "aria-pressed": String(said.includes(name)),
-              title: "With Shift besides the other sets",
-              onclick: (event) => (event.shiftKey ? share : say)(slot, target.name, name),
-            },
-            name,
-          );
-          chip.style.setProperty("--paint", css(paint));
-          chip.style.setProperty("--on-paint", ink(paint));
-          return chip;
-        }),
-      ),
-    );
-  }
-
-  function sureBox(slot, rule) {
-    const sure = rule.weight;
-    const box = html("input", {
-      type: "text",
-      inputmode: "decimal",
-      size: 5,
-      "aria-label": "Confidence of the rule, from 0 to 1",
-      onchange: () => {
-        const value = typed(box.value);
-        const outputs = outputsOf(store.now.state.rulebase);
-        if (value >= 0 && value <= 1) change(slot, withConfidence(rule, outputs, value));
-        else app.say("Confidence: type a number from 0 to 1.", "error");
-      },
-    });
-    box.value = sure === null ? "several" : String(sure);
-    return box;
-  }
-
   function showOperators({ operators: all }) {
     operators.dataset.known = JSON.stringify(all);
     operators.replaceChildren(
@@ -349,36 +265,13 @@ export function mount(element, app) {
       if (now === painted) return;
       painted = now;
       paint();
-      keepFocus(words, showWords);
+      const chosen = slots.find(({ key: one }) => one === cell);
+      keepFocus(words, () => showWords(words, app, chosen, change));
     },
   );
 }
 
-// ---------------------------------------------------------------------- places of rules
-
-function tableSlots({ rows, columns, row_sets: down, column_sets: across }) {
-  return down.flatMap((row, y) =>
-    across.map((column, x) => ({
-      x,
-      y,
-      key: `${y},${x}`,
-      place: { row, column },
-      name: `${columns} ${column}, ${rows} ${row}`,
-      rule: (rules) => rules.cells[y][x],
-    })),
-  );
-}
-
-function listSlots({ rules: all }) {
-  return all.map((rule, y) => ({
-    x: 0,
-    y,
-    key: String(y),
-    place: { rule: y },
-    name: `Rule ${y + 1}`,
-    rule: (rules) => rules.rules[y],
-  }));
-}
+// ---------------------------------------------------------------------- what rules are about
 
 function keyOfComplaint(where) {
   return where?.cell ? where.cell.join() : String(where?.rule ?? "");
@@ -386,11 +279,6 @@ function keyOfComplaint(where) {
 
 function complaintsByKey(complaints) {
   return new Map(complaints.map(({ where, message }) => [keyOfComplaint(where), message]));
-}
-
-/** The key of a rule, as `store.cell` has it: "row,column" of a table, or the index in a list. */
-export function placeKey(place, index) {
-  return place ? place.join() : String(index);
 }
 
 function strengths(explanation) {
@@ -408,96 +296,9 @@ function layoutOf({ rules, inputs }) {
   return JSON.stringify([inputs.map(({ name }) => name), rules.rules.map((one) => one.if)]);
 }
 
-// ---------------------------------------------------------------------- rows
-
-function tableRows({ rules }, slots) {
-  const { rows, columns, row_sets: down, column_sets: across } = rules;
-  const head = html(
-    "tr",
-    { role: "row" },
-    html("th", { class: "corner", scope: "col" }, html("span", {}, rows, " ╲ ", columns)),
-    across.map((name) => html("th", { scope: "col", role: "columnheader" }, name)),
-  );
-  const lines = down.map((name, y) =>
-    html(
-      "tr",
-      { role: "row" },
-      html("th", { scope: "row", role: "rowheader" }, name),
-      slots.filter((slot) => slot.y === y).map(({ td }) => td),
-    ),
-  );
-  return [html("thead", { role: "rowgroup" }, head), html("tbody", { role: "rowgroup" }, lines)];
-}
-
-function listRows({ inputs, rules }, slots) {
-  const head = html(
-    "tr",
-    { role: "row" },
-    ["", ...inputs.map(({ name }) => `if ${name}`), "then"].map((text) =>
-      html("th", { scope: "col", role: "columnheader" }, text),
-    ),
-  );
-  const lines = rules.rules.map(({ if: conditions }, y) =>
-    html(
-      "tr",
-      { role: "row" },
-      html("th", { scope: "row", role: "rowheader" }, String(y + 1)),
-      inputs.map(({ name }) =>
-        html(
-          "td",
-          { role: "gridcell", class: name in conditions ? "if" : "if none" },
-          conditions[name] ?? "any",
-        ),
-      ),
-      slots[y].td,
-    ),
-  );
-  return [html("thead", { role: "rowgroup" }, head), html("tbody", { role: "rowgroup" }, lines)];
-}
-
-// ---------------------------------------------------------------------- one cell
-
-/** Color a cell by its sets of one output; several share it by their confidences. */
-function tint({ td }, target, said, palette) {
-  const ground = token("--panel").match(/\w\w/g).map((part) => parseInt(part, 16));
-  const paints = said.map(({ set, confidence: sure }) =>
-    mix(ground, color(palette, shareOf(target, set)), 0.25 + 0.75 * sure),
-  );
-  const total = said.reduce((sum, one) => sum + one.confidence, 0) || 1;
-  let from = 0;
-  const stops = paints.map((paint, k) => {
-    const to = from + (100 * said[k].confidence) / total;
-    const stop = `${css(paint)} ${from}% ${to}%`;
-    from = to;
-    return stop;
-  });
-  td.style.background = stops.length > 1 ? `linear-gradient(90deg, ${stops})` : "";
-  if (stops.length === 1) td.style.background = css(paints[0]);
-  td.classList.toggle("split", stops.length > 1);
-  td.style.color = stops.length === 1 ? ink(paints[0]) : "";
-}
-
-/** The words of a cell, those of the colored output bold. */
-function write(box, pieces, output) {
-  const known = JSON.stringify([pieces, output]);
-  if (box.dataset.known === known) return;
-  box.dataset.known = known;
-  box.replaceChildren(
-    ...pieces.map((piece) => {
-      if (piece.tail) return html("small", {}, piece.text);
-      return piece.output === output ? html("b", {}, piece.text) : piece.text;
-    }),
-  );
-}
-
 function sentence(text) {
   const whole = text[0].toUpperCase() + text.slice(1);
   return /[.!?]$/.test(whole) ? whole : `${whole}.`;
-}
-
-function spoken({ name }, rule, strength, complaint) {
-  const fires = strength ? `, fires with ${strength.toFixed(2)}` : "";
-  return `${name}: ${rule.text}${fires}${complaint ? `. ${complaint}` : ""}`;
 }
 
 /** Redraw a part of the page; the control that had the focus has it again. */
@@ -508,17 +309,3 @@ function keepFocus(part, redraw) {
   if (at >= 0) controls()[at]?.focus();
 }
 
-/** The table as the text of an SVG file, as it is on the page. */
-function tableFile(grid) {
-  const box = grid.getBoundingClientRect();
-  const font = getComputedStyle(grid).fontFamily;
-  const pen = new SvgPen(Math.ceil(box.width), Math.ceil(box.height), token("--panel"), font);
-  for (const cell of grid.querySelectorAll("th, td")) {
-    const { left, top, width, height } = cell.getBoundingClientRect();
-    const [x, y] = [left - box.left, top - box.top];
-    const { color: fill, backgroundColor } = getComputedStyle(cell);
-    pen.polygon([x, y, x + width, y, x + width, y + height, x, y + height], backgroundColor);
-    pen.text(x + width / 2, y + height / 2, cell.textContent, { fill, align: "middle", size: 12 });
-  }
-  return pen.file();
-}

@@ -1,0 +1,124 @@
+/* Below the rules: the chosen rule and all words that it could say; rules are added and removed. */
+
+import { color, css, ink, shareOf } from "./colors.js";
+import { ask } from "./dialogs.js";
+import { check, html, select } from "./elements.js";
+import { icon } from "./icons.js";
+import { typed } from "./numbers.js";
+import { consequents, outputsOf, variable, withShare, withWord } from "./rulebase.js";
+
+/** Show the words of the rule in a slot, or what to do first; `change(slot, text)` edits a rule. */
+export function showWords(element, app, slot, change) {
+  const { rulebase } = app.store.now.state;
+  const isList = rulebase.rules.form === "list";
+  if (!slot) {
+    const hint = html("p", { class: "hint" }, "Choose a cell, then its words here; or type in the cell.");
+    element.replaceChildren(hint, ...(isList ? [adder(app)] : []));
+    return;
+  }
+  const rule = slot.rule(rulebase.rules);
+  element.replaceChildren(
+    html("div", { class: "where" }, html("b", {}, slot.name), html("span", { class: "mono" }, rule.text)),
+    ...outputsOf(rulebase).map((name) => row(app, slot, rule, variable(rulebase, name), change)),
+    html(
+      "div",
+      { class: "word-row" },
+      html("span", { class: "name" }, "confidence"),
+      sureBox(app, slot, rule),
+      html("span", { class: "space" }),
+      isList ? [adder(app), remover(app, slot)] : symmetry(app),
+    ),
+  );
+}
+
+function symmetry({ store }) {
+  return check("symmetric", store.now.symmetric, (on) => store.set({ symmetric: on }),
+    "Give the cell mirrored through the middle of the table the same words");
+}
+
+function row({ store }, slot, rule, target, change) {
+  const said = consequents(rule, target.name).map(({ set }) => set);
+  const outputs = outputsOf(store.now.state.rulebase);
+  const chips = target.sets.map(({ name }) => {
+    const paint = color(store.now.palette, shareOf(target, name));
+    const chip = html(
+      "button",
+      {
+        type: "button",
+        class: "chip",
+        "aria-pressed": String(said.includes(name)),
+        title: "With Shift besides the other sets",
+        onclick: ({ shiftKey }) =>
+          change(slot, (shiftKey ? withShare : withWord)(rule, outputs, target.name, name)),
+      },
+      name,
+    );
+    chip.style.setProperty("--paint", css(paint));
+    chip.style.setProperty("--on-paint", ink(paint));
+    return chip;
+  });
+  return html(
+    "div",
+    { class: "word-row", role: "group", "aria-label": target.name },
+    html("span", { class: "name", title: target.label }, target.name),
+    html("div", { class: "chips" }, chips),
+  );
+}
+
+function sureBox({ store, edit, say }, slot, rule) {
+  const box = html("input", {
+    type: "text",
+    inputmode: "decimal",
+    class: "number",
+    size: 5,
+    "aria-label": "Confidence of the rule, from 0 to 1",
+    onchange: () => {
+      const weight = typed(box.value);
+      const place = slot.place.rule === undefined ? slot.place : { index: slot.place.rule };
+      const symmetric = store.now.symmetric && slot.place.rule === undefined;
+      if (weight >= 0 && weight <= 1) edit("set_weight", { ...place, weight, symmetric });
+      else say("Confidence: type a number from 0 to 1.", "error");
+    },
+  });
+  box.value = rule.weight === null ? "several" : String(rule.weight);
+  return box;
+}
+
+// ---------------------------------------------------------------------- rules of a list
+
+function remover({ edit, store }, slot) {
+  const remove = async () => {
+    if (await edit("remove_rule", { index: slot.place.rule })) store.set({ cell: null });
+  };
+  return html("button", { type: "button", onclick: remove }, icon("remove"), "rule");
+}
+
+function adder(app) {
+  return html("button", { type: "button", onclick: () => compose(app) }, icon("add"), "rule");
+}
+
+/** Ask for the conditions and the conclusion of a new rule. */
+function compose({ edit, store }) {
+  const { inputs, outputs } = store.now.state.rulebase;
+  const [conditions, conclusions] = [{}, {}];
+  const line = (into, word, none) => ({ name, sets }) => {
+    const options = [["", none], ...sets.map((one) => [one.name, one.name])];
+    const choose = select(`${word} ${name}`, options, "", (set) => (into[name] = set));
+    return html("label", { class: "line-of-rule" }, html("span", {}, `${word} ${name} is`), choose);
+  };
+  const chosen = (all) => Object.entries(all).filter(([, set]) => set);
+  ask(
+    "A new rule",
+    [...inputs.map(line(conditions, "if", "any")), ...outputs.map(line(conclusions, "then", "not said"))],
+    [
+      [
+        "Add the rule",
+        async () => {
+          const then = chosen(conclusions).map(([output, set]) => ({ output, set }));
+          const added = await edit("add_rule", { if: Object.fromEntries(chosen(conditions)), then });
+          if (added) store.set({ cell: String(store.now.state.rulebase.rules.rules.length - 1) });
+        },
+      ],
+    ],
+  );
+}
