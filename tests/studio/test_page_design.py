@@ -164,3 +164,21 @@ def test_pictures_are_saved(design):
     text = download.value.path().read_text()
     assert text.startswith("<svg")
     assert text.count("<polygon") > 1500
+
+
+def test_rules_of_a_list_are_added_and_removed(design):
+    design.keyboard.press("Control+o")
+    design.get_by_role("button", name="tipper shipped").click()
+    rules = design.locator("#pane-rules td.cell")
+    expect(rules).to_have_count(5)
+    design.get_by_role("button", name="Add a rule").click()
+    design.get_by_label("if service").select_option("poor")
+    design.get_by_label("if food").select_option("delicious")
+    design.get_by_label("then tip").select_option("average")
+    design.get_by_role("button", name="Add the rule").click()
+    expect(rules).to_have_count(6)
+    design.get_by_label("Confidence of the rule").fill("0.5")
+    design.keyboard.press("Enter")
+    expect(rules.last).to_have_text("tip average@0.5")
+    design.get_by_role("button", name="Remove this rule").click()
+    expect(rules).to_have_count(5)

@@ -455,7 +455,7 @@ export function mount(element, app) {
       type: "text",
       class: "set-name",
       spellcheck: "false",
-      size: 4,
+      size: Math.max(3, one.name.length),
       "aria-label": `Name of the set ${one.name}`,
       onchange: async () => {
         const name = box.value.trim();

@@ -90,11 +90,13 @@ function remover({ edit, store }, slot) {
   const remove = async () => {
     if (await edit("remove_rule", { index: slot.place.rule })) store.set({ cell: null });
   };
-  return html("button", { type: "button", onclick: remove }, icon("remove"), "rule");
+  const name = { title: "Remove this rule", "aria-label": "Remove this rule" };
+  return html("button", { type: "button", ...name, onclick: remove }, icon("remove"), "rule");
 }
 
 function adder(app) {
-  return html("button", { type: "button", onclick: () => compose(app) }, icon("add"), "rule");
+  const name = { title: "Add a rule", "aria-label": "Add a rule" };
+  return html("button", { type: "button", ...name, onclick: () => compose(app) }, icon("add"), "rule");
 }
 
 /** Ask for the conditions and the conclusion of a new rule. */
