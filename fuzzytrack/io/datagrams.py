@@ -126,10 +126,10 @@ class AsterixDatagrams:
         category: int | None = None,
         source: str | None = None,
     ) -> None:
-        self.file, self._losses, self._taken = file, Losses(), 0
-        self._first = self._whole(datagrams)
+        self.file, self._first = file, list(datagrams)
+        self._losses, self._taken = Losses(), 0
         self._reader = Asterix(category, source, "none")
-        first = self._opened(self._first)
+        first = self._opened(self._first, Losses())
         self.types, self.description, self.origin = first.types, first.description, first.origin
         number, origin = re.findall(r"category (\d+) from source (.+)", first.origin)[0]
         self._reader = Asterix(int(number), origin, "none")
@@ -142,8 +142,9 @@ class AsterixDatagrams:
     def tables(
         self, kinds: Mapping[str, Kind], rows: int | None, progress: Progress = silent
     ) -> Iterator[Table]:
-        """The table of the first datagrams."""
-        yield self._table(self._first, 1, kinds)
+        """The table of the first datagrams, in which nothing is counted: `table` gets them, too."""
+        (table,) = self._opened(self._first, Losses()).tables(kinds, None)
+        yield table
 
     def table(self, datagrams: Sequence[bytes], first: int, kinds: Mapping[str, Kind]) -> Table:
         """Table of some datagrams.
@@ -161,32 +162,37 @@ class AsterixDatagrams:
         DataError
             If none of them holds a plot.
         """
-        return self._table(self._whole(datagrams), first, kinds)
-
-    def _table(self, datagrams: Sequence[bytes], first: int, kinds: Mapping[str, Kind]) -> Table:
-        source = self._opened(datagrams)
+        losses = Losses()
+        try:
+            source = self._opened(datagrams, losses)
+        except DataError:
+            # Several are tried again in parts, and counted then.
+            if len(datagrams) == 1:
+                self._count(1, losses)
+            raise
         unknown = {name for name in kinds if name not in source.types}
         if unknown:
             raise DataError(f"{self.file}: a datagram of plots without {', '.join(unknown)}")
         (table,) = source.tables(kinds, None)
+        self._count(len(datagrams), losses)
         table.rows[:] += first - 1
         return table
 
-    def _whole(self, datagrams: Sequence[bytes]) -> list[bytes]:
-        """Datagrams up to where a block does not end in them, lest it take bytes of the next."""
-        kept = []
-        for datagram in datagrams:
+    def _count(self, datagrams: int, losses: Losses) -> None:
+        self._taken += datagrams
+        self._losses.extend(losses)
+
+    def _opened(self, datagrams: Sequence[bytes], losses: Losses) -> RecordSource:
+        """Source of the datagrams, up to where a block does not end in one."""
+        kept: list[bytes] = []
+        for number, datagram in enumerate(datagrams, self._taken + 1):
             end = _end_of_blocks(datagram)
             kept.append(datagram[:end])
             if end < len(datagram):
-                place = f"datagram {self._taken + len(kept)}, byte {end}"
-                self._losses.add("ends of datagrams that are no whole block", place)
-        self._taken += len(kept)
-        return kept
-
-    def _opened(self, datagrams: Sequence[bytes]) -> RecordSource:
-        stream = ByteStream(self.file, io.BytesIO(b"".join(datagrams)))
-        return self._reader.source_of(stream, self._losses)
+                place = f"datagram {number}, byte {end}"
+                losses.add("ends of datagrams that are no whole block", place)
+        stream = ByteStream(self.file, io.BytesIO(b"".join(kept)))
+        return self._reader.source_of(stream, losses)
 
 
 def _end_of_blocks(datagram: bytes) -> int:

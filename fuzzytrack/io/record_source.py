@@ -50,6 +50,13 @@ class Losses:
         self._counts[key] = self._counts.get(key, 0) + count
         self._first.setdefault(key, place)
 
+    def extend(self, others: Losses) -> None:
+        """Count those of another part of the file."""
+        for key, count in others._counts.items():
+            so, what = key
+            self.add(what, others._first[key], count, so=so)
+        self._texts += others._texts
+
     def say(self, text: str) -> None:
         """Tell of something that cannot be counted."""
         self._texts.append(text)

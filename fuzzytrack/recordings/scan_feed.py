@@ -211,7 +211,8 @@ class ScanFeed:
     def sentences(self) -> tuple[str, ...]:
         """What was wrong with the feed so far, and what was done about it, in words."""
         found = self.stream.plots.findings.sentences() if self.stream is not None else ()
-        return (*self.faults.sentences(), *found)
+        lost = self._tables.notes if isinstance(self._tables, AsterixDatagrams) else ()
+        return (*self.faults.sentences(), *lost, *found)
 
     # ---------------------------------------------------------------- the first items
 

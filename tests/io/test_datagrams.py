@@ -80,8 +80,8 @@ def test_tables_of_datagrams():
 def test_a_broken_datagram_leaves_the_next_one_whole(broken):
     whole = [plots_048((10.0 + k, 18520, 90)) for k in range(2)]
     kinds = {"time": "time", "range": "gaps"}
-    tables = AsterixDatagrams("the feed", [broken, whole[0], broken, whole[1]])
-    (table,) = tables.tables(kinds, None)
+    given = [broken, whole[0], broken, whole[1]]
+    table = (tables := AsterixDatagrams("the feed", given)).table(given, 1, kinds)
     assert table.rows.tolist() == [1, 2]
     assert any("no whole block: 2 left out, first at datagram 1" in n for n in tables.notes)
 
