@@ -499,12 +499,13 @@ def _notes(plots: ScanPlots) -> Iterator[str]:
     columns = plots.files.columns
     if len(columns.axes) > 2:
         yield f"{columns.axes[2]}: tracks are in the plane of the other two coordinates"
-    if plots.columns.own:
-        yield f"position of the radar from columns {', '.join(plots.columns.own)}"
+    own = plots.columns.own or columns.own_ship
+    if own:
+        yield f"position of the radar from columns {', '.join(own)}"
     listed = plots.list is not None and plots.list.has_own
     if plots.list is not None and listed:
         yield f"position of the radar from {plots.list.file}"
-    elif not plots.columns.own and math.isnan(plots.radar[0]):
+    elif not own and math.isnan(plots.radar[0]):
         yield "position of the radar not known, so its bearing noise is not used; `own` gives it"
 
 

@@ -148,7 +148,8 @@ def test_faults_of_the_position_of_the_radar_are_counted():
 
 def test_plots_relative_to_own_ship():
     data = {**THREE, "sx": [7.0] * 5, "sy": [1, 1, 2, 3, 3]}
-    _, found = read(data, {"own_ship": ("sx", "sy")}, scan="n")
+    made, found = read(data, {"own_ship": ("sx", "sy")}, scan="n")
+    assert "position of the radar from columns sx, sy" in made.findings.notes
     assert [scan.own for _, scan in found] == [(7, 1), (7, 2), (7, 3)]
     np.testing.assert_array_equal(found[1][1].positions, [[8.1, 7.1]])
 
