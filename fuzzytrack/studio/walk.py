@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.studio.rule_inputs import rule_inputs, scheduler_of
 from fuzzytrack.trackers.base import Tracker
 
@@ -69,22 +69,26 @@ def _inputs(
     found = rule_inputs(tracker, times, z, sigma)
     if scheduler is None or found is None:
         return [[] for _ in times]
-    started: list[bool] = np.any(~np.isnan(innovation), axis=1).tolist()
-    return [
-        [_lane(scheduler, values) if begun else None for values in lanes]
-        for lanes, begun in zip(found, started, strict=True)
-    ]
+    known = ~np.isnan(found).any(axis=-1) & np.any(~np.isnan(innovation), axis=1)[:, None]
+    lanes: list[list[dict[str, Any] | None]] = [[None] * found.shape[1] for _ in times]
+    # All at once: one by one they would take longer than a page waits.
+    points = found[known]
+    strengths = scheduler.system.strengths(points)
+    for (scan, lane), point, strength in zip(
+        np.argwhere(known).tolist(), points, strengths, strict=True
+    ):
+        lanes[scan][lane] = _lane(scheduler.rules, point, strength)
+    return lanes
 
 
-def _lane(scheduler: FuzzyScheduler, values: Array) -> dict[str, Any] | None:
-    if np.isnan(values).any():
-        return None
-    point = dict(zip(scheduler.rules.input_names, values.tolist(), strict=True))
-    fired = scheduler.system.explain(**point)[:_RULES]
+def _lane(rules: RuleBase, point: Array, strength: Array) -> dict[str, Any]:
+    """Inputs of one lane at one scan, and the rules that fire there, the strongest first."""
+    order = np.argsort(-strength, kind="stable")[:_RULES].tolist()
     return {
-        "values": point,
+        "values": dict(zip(rules.input_names, point.tolist(), strict=True)),
         "rules": [
-            {"index": each.number - 1, "text": str(each.rule), "strength": each.strength}
-            for each in fired
+            {"index": k, "text": str(rules.rules[k]), "strength": float(strength[k])}
+            for k in order
+            if strength[k] > 0
         ],
     }

@@ -28,7 +28,7 @@ export function mount(element, app) {
   const track = makeTrackPicture("The track up to the scan of the slider", soFar, [marks], () => walk.t[at]);
   const innovationKey = html("span", {});
   const gainKey = html("span", {});
-  const failed = html("p", { class: "note" });
+  const instead = html("p", { class: "note", role: "status" });
   const body = html(
     "div",
     { class: "pictures" },
@@ -52,7 +52,7 @@ export function mount(element, app) {
       slider,
       when,
     ),
-    failed,
+    instead,
     body,
   );
 
@@ -71,21 +71,26 @@ export function mount(element, app) {
     const wanted = JSON.stringify([args, scenario?.text, state?.text]);
     if (wanted === asked) return;
     asked = wanted;
+    tell(`Run ${args.run} of ${args.tracker} is computed…`);
     try {
       const found = await socket.latest("walk", "walk", args);
       if (!found) return;
       walk = found;
-      failed.hidden = true;
-      body.hidden = false;
+      tell(null);
       slider.max = String(walk.t.length - 1);
       at = Math.min(at, walk.t.length - 1);
       track.fit();
       go(at);
     } catch (error) {
-      failed.textContent = error.message;
-      failed.hidden = false;
-      body.hidden = true;
+      tell(error.message);
     }
+  }
+
+  /** Say what is there instead of a run; null shows the run. */
+  function tell(text) {
+    instead.textContent = text ?? "";
+    instead.hidden = text === null;
+    body.hidden = text !== null;
   }
 
   function go(scan) {
@@ -103,8 +108,13 @@ export function mount(element, app) {
       key.replaceChildren(keyOf(linesIn(picture)));
     }
     plot.replaceChildren(...factsOf(walk, scan));
-    rules.replaceChildren(...rulesOf(walk.inputs?.[scan] ?? []));
+    rules.replaceChildren(...rulesOf(walk.inputs[scan], tracker.value === "editor" ? explain : null));
     track.redraw();
+  }
+
+  /** Show the inputs of a scan in the rule table and on the surface. */
+  function explain(point) {
+    app.show({ point });
   }
 
   function goTo(time) {
@@ -221,8 +231,8 @@ function factsOf({ seen, plots, predicted, innovations, gains }, scan) {
   return facts.flatMap(([name, value]) => [html("dt", {}, name), html("dd", {}, value)]);
 }
 
-/** Tables of the rules that fire, one for each axis, or one if the axes share their gains. */
-function rulesOf(lanes) {
+/** Tables of the rules that fire, one for each axis, or one if the axes share their gains; `explain` shows a point. */
+function rulesOf(lanes, explain) {
   const known = lanes.filter(Boolean);
   if (!known.length) return [html("p", { class: "note" }, "No rule fires here: the track is not started, or its gains come from no rule base.")];
   return known.map(({ values, rules }, k) =>
@@ -234,6 +244,9 @@ function rulesOf(lanes) {
         {},
         known.length > 1 ? `${AXES[k]}: ` : "",
         Object.entries(values).map(([name, value]) => `${name} = ${shown(value, 4)}`).join(", "),
+        explain
+          ? html("button", { type: "button", class: "link", onclick: () => explain(values) }, "in the rules")
+          : null,
       ),
       html(
         "tbody",
