@@ -131,8 +131,8 @@ export function mount(element, app) {
     const { state } = store.now;
     const file = state.file ?? `${state.name}.yaml`;
     const asked = [
-      ["snippet", { what: "python" }, "Python that loads it"],
-      ["snippet", { what: "command" }, "Command line"],
+      ["snippet", { what: "python" }, "Python of the experiment"],
+      ["snippet", { what: "command" }, "Command of the experiment"],
       ["report", {}, "Report (HTML)"],
     ];
     return [
@@ -144,7 +144,7 @@ export function mount(element, app) {
   }
 
   function looks() {
-    const { scheme, palette } = store.now;
+    const { palette } = store.now;
     const mark = (text, chosen) => (chosen ? `${text} ✓` : text);
     return [
       { heading: "Brightness" },
@@ -152,7 +152,7 @@ export function mount(element, app) {
         const value = k ? one : null;
         return { text: mark(one, app.wantedScheme() === value), run: () => app.setScheme(value) };
       }),
-      { heading: `Colors of values, on ${scheme}` },
+      { heading: "Colors of values" },
       ...PALETTES.map((one) => ({ text: mark(one, palette === one), run: () => store.set({ palette: one }) })),
     ];
   }

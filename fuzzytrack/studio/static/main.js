@@ -75,9 +75,17 @@ function tabs() {
 
 function heard(event, news) {
   if (event === "open") greet();
-  else if (event === "close") store.set({ connected: false });
+  else if (event === "close") lose();
   else if (event === "notice") say(news.text, "error");
   else if (event === "job") store.set({ job: news.job });
+}
+
+function lose() {
+  store.set({ connected: false });
+  // A server that is there but has never answered does not know the token.
+  if (!store.now.hello) {
+    say("No answer: open the whole address that `fuzzytrack studio` printed, with its token.", "error");
+  }
 }
 
 async function greet() {
@@ -134,6 +142,7 @@ const bar = files.mount(document.getElementById("bar"), app);
 mountViews(document.getElementById("rail"), document.getElementById("main"), app);
 
 document.addEventListener("keydown", (event) => {
+  if (document.querySelector("dialog[open]")) return;
   // Numbers are kept as soon as they are typed, so undo in their fields is that of the page.
   const typing = event.target.matches?.("input:not(.number, [type=checkbox]), textarea");
   const key = event.key.toLowerCase();
@@ -144,7 +153,7 @@ document.addEventListener("keydown", (event) => {
       z: typing ? null : () => edit(event.shiftKey ? "redo" : "undo"),
       y: typing ? null : () => edit("redo"),
     }[key];
-    if (!run || document.querySelector("dialog[open]")) return;
+    if (!run) return;
     event.preventDefault();
     run();
   } else if (event.key === "?" && !typing && !event.target.closest("[role=gridcell]")) bar.help();
