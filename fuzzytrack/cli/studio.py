@@ -11,7 +11,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import say
-from fuzzytrack.cli.studio_snippets import testbed_command
+from fuzzytrack.cli.studio_snippets import command_line
 
 __all__ = ["studio"]
 
@@ -64,4 +64,4 @@ def studio(
             # A browser that is started may keep its caller waiting.
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
-    serve(folder, host=host, port=port, token=token, started=started, command=testbed_command)
+    serve(folder, host=host, port=port, token=token, started=started, command=command_line)

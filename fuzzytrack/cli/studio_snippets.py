@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-__all__ = ["testbed_command"]
+__all__ = ["command_line"]
 
 
-def testbed_command(scenario: str, trackers: Sequence[str], runs: int, seed: int) -> str:
-    """Command that gives the same numbers as a Monte Carlo experiment of the page.
+def command_line(command: str, arguments: Sequence[str], options: Mapping[str, Any]) -> str:
+    """Write a command as it is typed.
 
     Parameters
     ----------
-    scenario : str
-        Name of a shipped one, or file.
-    trackers : sequence of str
-        As users write them.
-    runs, seed : int
+    command : str
+        Such as ``testbed``.
+    arguments : sequence of str
+        What follows it.
+    options : mapping of str to value
+        Values of options by the names of arguments of functions; lists are written with commas, and
+        None is left out.
     """
-    words = ["fuzzytrack", "testbed", scenario, "--trackers", ",".join(trackers)]
-    return shlex.join([*words, "--runs", str(runs), "--seed", str(seed)])
+    words = ["fuzzytrack", command, *arguments]
+    for name, value in options.items():
+        if value is None:
+            continue
+        listed = isinstance(value, Sequence) and not isinstance(value, str)
+        words += [f"--{name.replace('_', '-')}", ",".join(value) if listed else f"{value}"]
+    return shlex.join(words)

@@ -7,19 +7,29 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from fuzzytrack.specs import is_file, split
+from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
 from fuzzytrack.studio.pages import Page
-from fuzzytrack.studio.snippets import OnPage, python_snippet
-from fuzzytrack.studio.tracker_texts import EDITOR, SAVED
+from fuzzytrack.studio.snippets import (
+    PageTexts,
+    RunSnippet,
+    Snippet,
+    TrackSnippet,
+    TuneSnippet,
+)
+from fuzzytrack.studio.tracker_texts import EDITOR
 
 __all__ = ["HANDLERS"]
 
 Answer = Mapping[str, Any]
 
 _RUNS = 200
+_OF_SNIPPETS = (
+    *("trackers", "runs", "seed", "name", "on", "tracker", "free", "trials", "folds"),
+    *("time", "id", "axes", "sigma", "truth"),
+)
 
 
 def export(page: Page, given: Arguments) -> Answer:
@@ -31,44 +41,73 @@ def export(page: Page, given: Arguments) -> Answer:
 
 
 def snippet(page: Page, given: Arguments) -> Answer:
-    """Python, or a command, that gives the numbers of the experiment on the page."""
+    """Python, or a command, that does what is on the page: runs, tracks or tunes."""
     what = given.choice("what", ("python", "command"))
-    shown = _shown(page, given)
+    of = given.choice("of", ("run", "track", "tune"), "run")
+    shown = {"run": _run, "track": _track, "tune": _tune}[of](page, given)
     if what == "python":
-        return {"text": python_snippet(shown)}
+        return {"text": shown.python()}
     if page.studio.command is None:
         raise ValueError("what: there is no command here; take 'python'")
-    if not shown.scenario:
-        raise ValueError("what: save the scenario first; a command names its file")
-    trackers = [_named(shown, text) for text in shown.trackers]
-    return {"text": page.studio.command(shown.scenario, trackers, shown.runs, shown.seed)}
+    return {"text": page.studio.command(*shown.command())}
 
 
-def _shown(page: Page, given: Arguments) -> OnPage:
-    session, run = page.session, page.run
+def _texts(page: Page) -> PageTexts:
+    session = page.session
     texts = session.texts
-    usual = session.reading.scenario.trackers if run is None else list(run.trackers)
-    return OnPage(
+    return PageTexts(
         rules=texts.rules.name if session.is_saved("rules") else "",
         rules_text=texts.rules.text,
         scenario=texts.scenario.name if session.is_saved("scenario") else "",
         scenario_text=texts.scenario.text,
         saved=texts.rules.name if session.saved_text("rules") is not None else "",
+    )
+
+
+def _run(page: Page, given: Arguments) -> Snippet:
+    run = page.run
+    usual = page.session.reading.scenario.trackers if run is None else list(run.trackers)
+    return RunSnippet(
+        _texts(page),
         trackers=given.texts("trackers", list(usual or [EDITOR])),
         runs=given.whole("runs", 1, MOST_RUNS, _RUNS if run is None else run.runs),
         seed=given.whole("seed", 0, 2**53, 0 if run is None else run.seed),
     )
 
 
-def _named(shown: OnPage, text: str) -> str:
-    """A tracker as a command names it."""
-    name, _ = split(text, "tracker")
-    if name not in (EDITOR, SAVED):
-        return text
-    file = shown.rules if name == EDITOR else shown.saved
-    if not file:
-        raise ValueError("what: save the rule base first; a command names its file")
-    return file + text.strip()[len(name) :]
+def _track(page: Page, given: Arguments) -> Snippet:
+    return TrackSnippet(
+        _texts(page),
+        name=given.text("name"),
+        trackers=given.texts("trackers", [EDITOR]),
+        options=_columns(given),
+    )
+
+
+def _tune(page: Page, given: Arguments) -> Snippet:
+    free = given.text("free", None)
+    numbers = ("trials", "folds", "runs", "seed")
+    return TuneSnippet(
+        _texts(page),
+        on=given.text("on", None),
+        tracker=given.text("tracker", EDITOR),
+        options={
+            "free": None if not free else [word.strip() for word in free.split(",")],
+            **{name: given.whole(name, 0, 2**53, None) for name in numbers},
+            **_columns(given),
+        },
+    )
+
+
+def _columns(given: Arguments) -> dict[str, Any]:
+    """What is said of the columns of a recording."""
+    return {
+        "time": given.text("time", None),
+        "id": given.text("id", None),
+        "axes": given.texts("axes", None),
+        "sigma": given.number("sigma", None),
+        "truth": given.texts("truth", None),
+    }
 
 
 def report(page: Page, given: Arguments) -> Later:
@@ -91,6 +130,6 @@ def report(page: Page, given: Arguments) -> Later:
 
 HANDLERS = {
     "export": Handler(export, ("what",)),
-    "snippet": Handler(snippet, ("what", "trackers", "runs", "seed")),
+    "snippet": Handler(snippet, ("what", "of", *_OF_SNIPPETS)),
     "report": Handler(report),
 }

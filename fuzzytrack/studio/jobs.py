@@ -5,20 +5,25 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from contextlib import contextmanager
 from itertools import count
 from typing import Any
 
+from fuzzytrack.errors import NoRuleFiresWarning, TrackWarning
 from fuzzytrack.studio.limits import SILENCE
 from fuzzytrack.workers import end_processes, process_pool
 
-__all__ = ["CancelledJobError", "Job", "Jobs", "Report", "Work"]
+__all__ = ["CancelledJobError", "Job", "Jobs", "Report", "Work", "warnings_to_jobs"]
 
 # Shortest time between two reports of one job, s.
 _PAUSE = 0.1
 # Processes; a computer with more cores keeps some for the page and everything else.
 _MOST_PROCESSES = 8
+# Notes of a job; every run of a tracker may have one.
+_MOST_NOTES = 20
 
 
 class CancelledJobError(Exception):
@@ -47,6 +52,7 @@ class Job:
         self.state = "running"
         self.error: str | None = None
         self.results: dict[str, Any] | None = None
+        self.notes: list[str] = []
         self._report = report
         self._share = 0.0
         self._begun = self._heard = time.monotonic()
@@ -120,6 +126,9 @@ class Job:
             "results": self.results if results else None,
         }
 
+
+# The job of a thread.
+_thread = threading.local()
 
 #: Called with a job, and whether it has new results.
 Report = Callable[[Job, bool], None]
@@ -196,6 +205,7 @@ class Jobs:
 
     def _do(self, job: Job, work: Work, pool: ProcessPoolExecutor) -> None:
         """Do the work; runs in a thread of its own."""
+        _thread.job = job
         try:
             job.finish(work(job, pool))
         except CancelledJobError:
@@ -209,6 +219,29 @@ class Jobs:
         except Exception as failure:
             # What a plug-in raises is no mistake of the server.
             job.end("failed", f"{type(failure).__name__}: {failure}")
+
+
+@contextmanager
+def warnings_to_jobs() -> Iterator[None]:
+    """Give warnings about tracks to the job in whose thread they are issued, as its notes.
+
+    Others are shown as before. It holds for the whole program, so it is for its first thread.
+    """
+    shown = warnings.showwarning
+
+    def show(message: Warning | str, *where: Any, **more: Any) -> None:
+        job: Job | None = getattr(_thread, "job", None)
+        if job is None:
+            shown(message, *where, **more)
+        elif str(message) not in job.notes and len(job.notes) < _MOST_NOTES:
+            job.notes.append(str(message))
+
+    with warnings.catch_warnings():
+        for category in (TrackWarning, NoRuleFiresWarning):
+            # Not once: each job has its own.
+            warnings.simplefilter("always", category)
+        warnings.showwarning = show
+        yield
 
 
 def _processes() -> int:

@@ -6,7 +6,7 @@ import contextlib
 import secrets
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from fuzzytrack.studio.folder import Folder
@@ -18,10 +18,10 @@ from fuzzytrack.studio.session import Session
 from fuzzytrack.studio.tracker_texts import listed_trackers
 from fuzzytrack.studio.uploads import Uploads
 
-__all__ = ["Line", "Page", "RunCommand", "Studio"]
+__all__ = ["CommandLine", "Line", "Page", "Studio"]
 
-#: Command that does an experiment: scenario, trackers, runs, seed.
-RunCommand = Callable[[str, Sequence[str], int, int], str]
+#: Writes a command line: the command, what follows it, and its options by their names.
+CommandLine = Callable[[str, Sequence[str], Mapping[str, object]], str]
 
 
 # Seconds that a command waits for the one before it.
@@ -134,11 +134,10 @@ class Studio:
     folder : Folder
         Files of the user.
     command : callable, optional
-        Called with the scenario, the trackers, runs and seed of an experiment; gives the command
-        that does the same.
+        Writes a command line that does the same as the page.
     """
 
-    def __init__(self, folder: Folder, command: RunCommand | None = None) -> None:
+    def __init__(self, folder: Folder, command: CommandLine | None = None) -> None:
         self.folder = folder
         self.command = command
         self.jobs = Jobs()

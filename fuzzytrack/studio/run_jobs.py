@@ -78,7 +78,7 @@ def run_work(run: Run) -> Work:
             executor=pool,
         )
         run.results = found
-        return results_as_json(found, counts)
+        return {**results_as_json(found, counts), "notes": job.notes}
 
     return work
 

@@ -15,6 +15,7 @@ import uvicorn
 from fuzzytrack.studio.access import Access, check_token, new_token
 from fuzzytrack.studio.app import make_app
 from fuzzytrack.studio.folder import Folder
+from fuzzytrack.studio.jobs import warnings_to_jobs
 from fuzzytrack.studio.limits import MESSAGE_BYTES
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def serve(
         server = make_server(studio, access)
         threading.Thread(target=studio.warm, daemon=True).start()
         started(f"http://{_written(access)}/#token={token}")
-        with contextlib.suppress(KeyboardInterrupt):
+        with contextlib.suppress(KeyboardInterrupt), warnings_to_jobs():
             server.run(sockets=[listening])
 
 

@@ -1,30 +1,32 @@
-"""Python that does in a script what is on the page."""
+"""Python, and commands, that do what is on the page: an experiment, tracks, a tuning."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from fuzzytrack import specs
 from fuzzytrack.studio.tracker_texts import EDITOR, SAVED
 
-__all__ = ["OnPage", "python_snippet"]
+__all__ = ["PageTexts", "RunSnippet", "Snippet", "TrackSnippet", "TuneSnippet"]
+
+#: A command, what follows it, and its options by their names.
+Command = tuple[str, Sequence[str], Mapping[str, object]]
 
 
 @dataclass(frozen=True)
-class OnPage:
-    """What a page shows.
+class PageTexts:
+    """Texts of a page, and where a script finds them.
 
     Attributes
     ----------
     rules, scenario : str
         Name of what is shipped, or of a file; empty if the text differs from that.
     rules_text, scenario_text : str
-        The texts.
     saved : str
-        Name of the rule base as it was last saved or opened.
-    trackers : sequence of str
-    runs, seed : int
+        Name of the rule base as it was last saved or opened; empty if it never was.
     """
 
     rules: str
@@ -32,48 +34,201 @@ class OnPage:
     scenario: str
     scenario_text: str
     saved: str
+
+    def named(self, tracker: str) -> str | None:
+        """A tracker as a script names it; None if it is a rule base that has no name."""
+        name, _ = specs.split(tracker, "tracker")
+        if name not in (EDITOR, SAVED):
+            return tracker
+        file = self.rules if name == EDITOR else self.saved
+        return file + tracker.strip()[len(name) :] if file else None
+
+    def typed(self, tracker: str) -> str:
+        """A tracker as a command names it.
+
+        Raises
+        ------
+        ValueError
+            If its rule base has not been saved.
+        """
+        found = self.named(tracker)
+        if found is None:
+            raise ValueError("what: save the rule base first; a command names its file")
+        return found
+
+    @property
+    def typed_scenario(self) -> str:
+        """The scenario as a command names it.
+
+        Raises
+        ------
+        ValueError
+            If it has not been saved.
+        """
+        if not self.scenario:
+            raise ValueError("what: save the scenario first; a command names its file")
+        return self.scenario
+
+
+class Script:
+    """Lines of Python, with the imports that they need.
+
+    Parameters
+    ----------
+    texts : PageTexts
+    """
+
+    def __init__(self, texts: PageTexts) -> None:
+        self._texts = texts
+        self._imports: dict[str, None] = {}
+        self._lines: list[str] = []
+
+    def imports(self, module: str, name: str) -> None:
+        """Import a name."""
+        self._imports[f"from {module} import {name}"] = None
+
+    def add(self, line: str) -> None:
+        """Add a line, unless it is there."""
+        if line not in self._lines:
+            self._lines.append(line)
+
+    def scenario(self) -> str:
+        """Expression for the scenario of the page."""
+        if self._texts.scenario:
+            return repr(self._texts.scenario)
+        self.imports("fuzzytrack.simulation.scenario_files", "loads_scenario")
+        self.add(f"scenario = loads_scenario({_literal(self._texts.scenario_text)})")
+        return "scenario"
+
+    def rules(self) -> str:
+        """Expression for the rule base of the editor, which has no name."""
+        self.imports("fuzzytrack.fuzzy.loading", "loads_rulebase")
+        self.add(f"rules = loads_rulebase({_literal(self._texts.rules_text)})")
+        return "rules"
+
+    def trackers(self, texts: Sequence[str]) -> str:
+        """Expression for some trackers."""
+        found = {text: self._tracker(text) for text in texts}
+        if all(value == repr(text) for text, value in found.items()):
+            return f"[{', '.join(found.values())}]"
+        return "{" + ", ".join(f"{text!r}: {value}" for text, value in found.items()) + "}"
+
+    def _tracker(self, text: str) -> str:
+        named = self._texts.named(text)
+        if named is not None:
+            return repr(named)
+        self.imports("fuzzytrack.trackers.catalog", "tracker_of_rules")
+        return f"tracker_of_rules({self.rules()}, {specs.split(text, 'tracker')[1]!r})"
+
+    def __str__(self) -> str:
+        return "\n".join([*sorted(self._imports), "", *self._lines, ""])
+
+
+@dataclass(frozen=True)
+class Snippet(ABC):
+    """What a page does, as Python and as a command.
+
+    Attributes
+    ----------
+    texts : PageTexts
+    """
+
+    texts: PageTexts
+
+    @abstractmethod
+    def python(self) -> str:
+        """The script."""
+
+    @abstractmethod
+    def command(self) -> Command:
+        """The command; ValueError if it names what has not been saved."""
+
+
+@dataclass(frozen=True)
+class RunSnippet(Snippet):
+    """A Monte Carlo experiment."""
+
     trackers: Sequence[str]
     runs: int
     seed: int
 
+    def python(self) -> str:
+        """See `Snippet.python`."""
+        script = Script(self.texts)
+        script.imports("fuzzytrack.testbed.montecarlo", "monte_carlo")
+        scenario, trackers = script.scenario(), script.trackers(self.trackers)
+        script.add(f"trackers = {trackers}")
+        script.add(
+            f"results = monte_carlo({scenario}, trackers, runs={self.runs}, seed={self.seed})"
+        )
+        script.add("for row in results.table():")
+        script.add('    print(row["name"], row["predicted_rmse"], row["predicted_rmse_se"])')
+        return str(script)
 
-def python_snippet(shown: OnPage) -> str:
-    """Script that gives the same numbers as the experiment of a page."""
-    imports = {"from fuzzytrack.testbed.montecarlo import monte_carlo"}
-    lines: list[str] = []
-    scenario = repr(shown.scenario)
-    if not shown.scenario:
-        imports.add("from fuzzytrack.simulation.scenario_files import loads_scenario")
-        lines.append(f"scenario = loads_scenario({_literal(shown.scenario_text)})")
-        scenario = "scenario"
-    trackers = {text: _tracker(text, shown, imports, lines) for text in shown.trackers}
-    if all(value == repr(text) for text, value in trackers.items()):
-        named = f"[{', '.join(trackers.values())}]"
-    else:
-        named = "{" + ", ".join(f"{text!r}: {value}" for text, value in trackers.items()) + "}"
-    lines += [
-        f"trackers = {named}",
-        f"results = monte_carlo({scenario}, trackers, runs={shown.runs}, seed={shown.seed})",
-        "for row in results.table():",
-        '    print(row["name"], row["predicted_rmse"], row["predicted_rmse_se"])',
-    ]
-    return "\n".join([*sorted(imports), "", *lines, ""])
+    def command(self) -> Command:
+        """See `Snippet.command`."""
+        trackers = [self.texts.typed(text) for text in self.trackers]
+        options = {"trackers": trackers, "runs": self.runs, "seed": self.seed}
+        return "testbed", [self.texts.typed_scenario], options
 
 
-def _tracker(text: str, shown: OnPage, imports: set[str], lines: list[str]) -> str:
-    """Expression for a tracker of the page."""
-    name, options = specs.split(text, "tracker")
-    if name not in (EDITOR, SAVED):
-        return repr(text)
-    file = shown.rules if name == EDITOR else shown.saved
-    if file:
-        return repr(file + text.strip()[len(name) :])
-    imports.add("from fuzzytrack.fuzzy.loading import loads_rulebase")
-    imports.add("from fuzzytrack.trackers.catalog import tracker_of_rules")
-    line = f"rules = loads_rulebase({_literal(shown.rules_text)})"
-    if line not in lines:
-        lines.append(line)
-    return f"tracker_of_rules(rules, {dict(options)!r})"
+@dataclass(frozen=True)
+class TrackSnippet(Snippet):
+    """Trackers compared on a recording."""
+
+    name: str
+    trackers: Sequence[str]
+    options: Mapping[str, Any]
+
+    def python(self) -> str:
+        """See `Snippet.python`."""
+        script = Script(self.texts)
+        script.imports("fuzzytrack.testbed", "compare_recorded")
+        script.add(f"trackers = {script.trackers(self.trackers)}")
+        given = "".join(f", {k}={v!r}" for k, v in _python_options(self.options).items())
+        script.add(f"found = compare_recorded(trackers, {self.name!r}{given})")
+        script.add("for score in found.scores:")
+        script.add("    print(score.name, score.rms)")
+        return str(script)
+
+    def command(self) -> Command:
+        """See `Snippet.command`."""
+        trackers = [self.texts.typed(text) for text in self.trackers]
+        return "compare", [self.name], {"trackers": trackers, **self.options}
+
+
+@dataclass(frozen=True)
+class TuneSnippet(Snippet):
+    """The tuning of a tracker, on a recording or the scenario of the page."""
+
+    on: str | None
+    tracker: str
+    options: Mapping[str, Any]
+
+    def python(self) -> str:
+        """See `Snippet.python`."""
+        script = Script(self.texts)
+        script.imports("fuzzytrack.tuning.tuner", "tune")
+        data = script.scenario() if self.on is None else repr(self.on)
+        named = self.texts.named(self.tracker)
+        tracker = script.rules() if named is None else repr(named)
+        given = "".join(f", {k}={v!r}" for k, v in _python_options(self.options).items())
+        script.add(f"tuned = tune({data}, {tracker}{given})")
+        script.add("print(tuned.report)")
+        return str(script)
+
+    def command(self) -> Command:
+        """See `Snippet.command`."""
+        data = self.texts.typed_scenario if self.on is None else self.on
+        return "tune", [data], {"tracker": self.texts.typed(self.tracker), **self.options}
+
+
+def _python_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options that are given, as functions take them."""
+    given = {name: value for name, value in options.items() if value is not None}
+    if "truth" in given:
+        given["truth"] = ",".join(given["truth"])
+    return given
 
 
 def _literal(text: str) -> str:

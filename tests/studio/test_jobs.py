@@ -1,0 +1,104 @@
+"""Jobs without processes: their states, and what they tell."""
+
+import threading
+import warnings
+
+import pytest
+
+from fuzzytrack.errors import TrackWarning
+from fuzzytrack.studio import jobs
+from fuzzytrack.studio.jobs import Jobs, warnings_to_jobs
+
+
+class Reports:
+    """Takes the reports of jobs; `end` waits for the end of one."""
+
+    def __init__(self):
+        self.told = []
+        self.ended = threading.Event()
+
+    def __call__(self, job, with_results):
+        self.told.append(job.as_json(with_results))
+        if not job.running:
+            self.ended.set()
+
+    def end(self):
+        assert self.ended.wait(30)
+        return self.told[-1]
+
+
+@pytest.fixture
+def found():
+    made = Jobs()
+    yield made
+    made.close()
+
+
+def test_a_job_tells_how_far_it_is_and_what_it_found(found, monkeypatch):
+    monkeypatch.setattr(jobs, "_PAUSE", 0.0)
+    reports = Reports()
+
+    def work(job, pool):
+        job.progress(0.25)
+        job.show({"x": 1})
+        job.progress(0.5)
+        return {"x": 2}
+
+    found.start("run", 8, work, reports)
+    assert reports.end()["results"] == {"x": 2}
+    assert [each["done"] for each in reports.told] == [2, 2, 4, 8]
+    assert [each["results"] for each in reports.told] == [None, {"x": 1}, None, {"x": 2}]
+    assert reports.told[0]["seconds_left"] >= 0
+    last = reports.told[-1]
+    assert (last["state"], last["seconds_left"], last["error"]) == ("done", None, None)
+
+
+def test_a_job_that_is_canceled_stays_so(found):
+    reports, go = Reports(), threading.Event()
+
+    def work(job, pool):
+        go.wait(30)
+        job.progress(0.9)
+        return {}
+
+    job = found.start("run", 1, work, reports)
+    with pytest.raises(ValueError, match=r"a job \(run\) is running"):
+        found.start("tune", 1, work, reports)
+    with pytest.raises(ValueError, match="no job 99 is running"):
+        found.cancel(99)
+    assert found.cancel(job.number).state == "cancelled"
+    go.set()
+    assert reports.end()["state"] == "cancelled"
+    assert found.start("run", 1, lambda job, pool: {}, Reports()).number == job.number + 1
+
+
+@pytest.mark.parametrize(
+    ("failure", "told"),
+    [
+        (ValueError("runs: too many"), "runs: too many"),
+        (KeyError("k"), "KeyError: 'k'"),
+    ],
+)
+def test_a_job_that_fails_says_why(found, failure, told):
+    reports = Reports()
+
+    def work(job, pool):
+        raise failure
+
+    found.start("run", 1, work, reports)
+    assert reports.end()["error"] == told
+
+
+def test_warnings_in_a_job_become_its_notes(found):
+    reports = Reports()
+
+    def work(job, pool):
+        for _ in range(2):
+            warnings.warn("the gains do not suit", TrackWarning, stacklevel=1)
+        return {"notes": job.notes}
+
+    with warnings_to_jobs():
+        found.start("run", 1, work, reports)
+        assert reports.end()["results"] == {"notes": ["the gains do not suit"]}
+    with warnings_to_jobs(), pytest.warns(TrackWarning):
+        warnings.warn("somewhere else", TrackWarning, stacklevel=1)

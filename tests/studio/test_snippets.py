@@ -1,0 +1,71 @@
+"""Scripts and commands that do what is on the page."""
+
+import shlex
+
+import pytest
+
+from fuzzytrack.cli.studio_snippets import command_line
+
+
+def run_script(text):
+    """What a script prints, without running trackers for long."""
+    printed = []
+    exec(text, {"print": lambda *words: printed.append([str(word) for word in words])})
+    return printed
+
+
+def test_a_rule_base_that_is_not_saved_is_in_the_script(page):
+    page.ask("set_cell", row=0, column=1, text="S-S")
+    text = page.ask("snippet", what="python", trackers=["editor", "saved"], runs=3)["text"]
+    assert "loads_rulebase(" in text
+    assert "'saved': 'stiffness-damping'" in text
+    (editor, *numbers), (saved, *others) = run_script(text)
+    assert (editor, saved) == ("editor", "saved")
+    assert numbers != others
+
+
+def test_a_scenario_that_is_not_saved_is_in_the_script(page):
+    page.ask("set_sensors", sigma=1)
+    arguments = {"trackers": ["fixed:alpha=0.5:beta=0.2"], "runs": 2, "seed": 4}
+    text = page.ask("snippet", what="python", **arguments)["text"]
+    assert text.startswith("from fuzzytrack.simulation.scenario_files import loads_scenario\n")
+    assert len(run_script(text)) == 1
+    assert page.refused("snippet", what="command").startswith("what: there is no command here")
+
+
+def test_commands_name_what_is_saved(page, server, monkeypatch):
+    monkeypatch.setattr(server.studio(), "command", command_line)
+    arguments = {"trackers": ["editor:start=one-point", "chan-style"], "runs": 9, "seed": 2}
+    text = page.ask("snippet", what="command", **arguments)["text"]
+    assert text == (
+        "fuzzytrack testbed turn --trackers stiffness-damping:start=one-point,chan-style "
+        "--runs 9 --seed 2"
+    )
+    track = {"name": "a b.csv", "trackers": ["saved"], "id": "ship", "truth": ["x", "y"]}
+    text = page.ask("snippet", what="command", of="track", **track)["text"]
+    assert shlex.split(text) == [
+        *["fuzzytrack", "compare", "a b.csv", "--trackers", "stiffness-damping"],
+        *["--id", "ship", "--truth", "x,y"],
+    ]
+    tune = {"free": "outputs, sets", "trials": 7, "sigma": 2.5}
+    text = page.ask("snippet", what="command", of="tune", **tune)["text"]
+    assert text == (
+        "fuzzytrack tune turn --tracker stiffness-damping --free outputs,sets --trials 7 "
+        "--sigma 2.5"
+    )
+    page.ask("set_sensors", sigma=1)
+    assert "save the scenario first" in page.refused("snippet", what="command", **arguments)
+    page.ask("set_cell", row=0, column=1, text="S-S")
+    track["trackers"] = ["editor"]
+    message = page.refused("snippet", what="command", of="track", **track)
+    assert "save the rule base first" in message
+
+
+@pytest.mark.parametrize("of", ["track", "tune"])
+def test_scripts_of_recordings_are_python(page, of):
+    page.ask("set_cell", row=0, column=1, text="S-S")
+    arguments = {"track": {"name": "a.csv", "truth": ["x", "y"]}, "tune": {"on": "a.csv"}}[of]
+    text = page.ask("snippet", what="python", of=of, sigma=2, **arguments)["text"]
+    compile(text, of, "exec")
+    assert "'a.csv'" in text
+    assert "sigma=2.0" in text
