@@ -32,6 +32,9 @@ _NEARER = 4.0
 _NEIGHBORS, _OF_PLOTS, _TOO_FAR = 20, 0.2, 0.75
 # Ratios of given standard deviations to those of the configuration that are far off.
 _WIDER, _NARROWER = 5.0, 0.05
+# Time from scan to scan, in those of the configuration, that no radar of its kind has; size of all
+# plots, in standard deviations of one, that is none of a region with several plots a scan.
+_OTHER_TIME, _SMALL, _SEVERAL = 100.0, 10.0, 3
 # Scans and plots of which a track is expected.
 _SCANS_OF_TRACK, _PLOTS_OF_TRACK = 8, 20
 # Plots of a scan that has any, below which most have one.
@@ -78,12 +81,15 @@ class ScanFit:
         self._scanner, self._turn = scanner, turn if whole else None
         greatest = getattr(scanner.initiation, "greatest_speed", 0.0)
         # Some configurations leave the way to the second plot to the gate.
-        self._greatest = float(greatest) if whole else 0.0
+        self._greatest, self._whole = float(greatest) if whole else 0.0, whole
         self._last: tuple[str, Scan] | None = None
         self._scans = self._empty = self._plots = self._seen = self._compared = 0
         self._confirmed = False
         self._neighbors: list[_Neighbors] = []
         self._noise: list[tuple[Array, Array]] = []
+        self._times: list[float] = []
+        self._early = 0
+        self._low, self._high = np.full(2, math.inf), np.full(2, -math.inf)
 
     def add(self, each: ScannedScan) -> None:
         """Look at a scan, and at the tracks after it."""
@@ -97,6 +103,7 @@ class ScanFit:
         self._seen += len(scan)
         if scan.covariances is not None and len(scan):
             self._noise.append(_given(scan))
+        self._measure(each)
         last, self._last = self._last, (each.group, scan)
         if self._greatest and last is not None and last[0] == each.group:
             before = last[1]
@@ -105,22 +112,42 @@ class ScanFit:
                 found = _neighbors(before, scan, self._scanner.sensor, self._greatest)
                 self._neighbors.append(found)
 
+    def _measure(self, each: ScannedScan) -> None:
+        """Note when a scan was, and where its plots are."""
+        scan = each.scan
+        if self._last is not None and self._last[0] != each.group:
+            self._times.append(math.nan)
+        if scan.times is not None and len(self._times) > 1:
+            # Scans of a turning antenna may overlap a little.
+            self._early += int(np.count_nonzero(scan.times < self._times[-2]))
+        self._times.append(scan.time)
+        if len(scan):
+            self._low = np.minimum(self._low, scan.positions.min(axis=0))
+            self._high = np.maximum(self._high, scan.positions.max(axis=0))
+
     def notes(self) -> Iterator[str]:
         """What a user should know, in sentences; nothing if the plots suit."""
         wrong = self._of_turns()
         if wrong:
             yield wrong
             return
+        if self._early:
+            yield (
+                f"earlier than the scan two before theirs, and so used for no track: "
+                f"{counted(self._early, 'plot')}; look at their times"
+            )
         told = False
         missing = (
             not self._confirmed
             and self._scans >= _SCANS_OF_TRACK
             and self._plots >= _PLOTS_OF_TRACK
         )
-        for sentence in (self._of_distances(), self._of_noise()):
-            if sentence:
-                told = True
-                yield sentence
+        # With another unit, distances and noise say nothing more.
+        units = [self._of_times(), self._of_size()]
+        others = [] if any(units) else [self._of_distances(), self._of_noise()]
+        for sentence in filter(None, units + others):
+            told = True
+            yield sentence
         if missing:
             yield f"no track was confirmed in {counted(self._scans, 'scan')}" + (
                 "" if told else f": {self._expected()}"
@@ -145,6 +172,32 @@ class ScanFit:
                 f"others one; {right}: is it longer? Otherwise the radar sees hardly anything"
             )
         return ""
+
+    def _of_times(self) -> str:
+        """What says that times have another unit."""
+        steps = np.diff(self._times)
+        steps = steps[steps > 0]
+        if not self._whole or len(steps) < _SCANS_OF_TRACK:
+            return ""
+        usual, period = float(np.median(steps)), self._scanner.sensor.period
+        if period / _OTHER_TIME < usual < _OTHER_TIME * period:
+            return ""
+        return (
+            f"scans are typically {usual:.4g} s apart; {self._name} is made for {period:.4g} s "
+            "(sensor.period): are times in another unit than s?"
+        )
+
+    def _of_size(self) -> str:
+        """What says that positions have another unit."""
+        size = float(np.hypot(*(self._high - self._low)))
+        noise = math.hypot(self._scanner.sensor.range_noise, self._scanner.sensor.extra_noise)
+        several = self._plots >= max(_PLOTS_OF_TRACK, _SEVERAL * self._scans)
+        if not several or size > _SMALL * noise:
+            return ""
+        return (
+            f"all plots are within {size:.3g} m, where one is exact to {_shown(noise)} m "
+            "(sensor.range_noise): are positions in another unit than m?"
+        )
 
     def _of_distances(self) -> str:
         if not self._neighbors:

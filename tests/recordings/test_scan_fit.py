@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -156,3 +158,28 @@ def test_the_notes_are_those_of_the_recording():
     told = found.job.plots.findings.notes
     assert [each.split(" ")[0] for each in told[-3:]] == ["neighboring", "given", "no"]
     assert "neighboring plots" in found._repr_html_()
+
+
+def test_other_units_are_asked_for():
+    scans = movers(3.0, clutter=10)
+    (told,) = notes([replace(scan, time=1000 * scan.time) for scan in scans])
+    assert told == (
+        "scans are typically 2000 s apart; default is made for 1.678 s (sensor.period): are times "
+        "in another unit than s?"
+    )
+    (told,) = notes([replace(scan, positions=scan.positions / 1000) for scan in scans])
+    assert told.startswith("all plots are within 3.")
+    assert told.endswith("(sensor.range_noise): are positions in another unit than m?")
+    assert notes(scans) == []
+
+
+def test_a_plot_of_another_time_is_counted():
+    scans = [replace(scan, times=np.full(len(scan), scan.time)) for scan in movers(3.0)]
+    assert notes(scans) == []
+    wrong = scans[9].times.copy()
+    wrong[2] = 3.0
+    (told,) = notes([*scans[:9], replace(scans[9], times=wrong), *scans[10:]])
+    assert told == (
+        "earlier than the scan two before theirs, and so used for no track: 1 plot; look at their "
+        "times"
+    )
