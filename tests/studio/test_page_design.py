@@ -27,9 +27,16 @@ def surface(page):
     return page.locator("#pane-surface canvas")
 
 
+PIXELS = "document.querySelector('#pane-surface canvas').toDataURL()"
+
+
 def pixels(page):
     """The picture of the surface, which changes with whatever is drawn in it."""
-    return page.evaluate("document.querySelector('#pane-surface canvas').toDataURL()")
+    return page.evaluate(PIXELS)
+
+
+def expect_redrawn(page, before):
+    page.wait_for_function(f"before => {PIXELS} != before", arg=before)
 
 
 def corner(page, name):
@@ -85,7 +92,7 @@ def test_dragged_corner_is_one_step_of_undo(design):
     expect(design.get_by_label("ze, c", exact=True)).not_to_have_value("0.1")
     design.mouse.up()
     expect(design.get_by_role("button", name="Undo")).to_be_enabled()
-    assert pixels(design) != before
+    expect_redrawn(design, before)
     design.keyboard.press("Control+z")
     expect(design.get_by_label("ze, c", exact=True)).to_have_value("0.1")
     expect(design.locator("#bar")).to_contain_text("as shipped")
@@ -111,9 +118,7 @@ def test_surface_turns_and_a_click_explains(design):
     before = pixels(design)
     surface(design).focus()
     design.keyboard.press("ArrowLeft")
-    design.wait_for_function(
-        "before => document.querySelector('#pane-surface canvas').toDataURL() != before", arg=before
-    )
+    expect_redrawn(design, before)
     surface(design).click()
     expect(design.locator("#pane-explain .results")).to_contain_text("stiffness")
     expect(design.locator("#pane-rules td.fired").first).to_be_visible()
