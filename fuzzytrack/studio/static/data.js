@@ -4,6 +4,8 @@ import { makeChart } from "./chart.js";
 import { html, select } from "./elements.js";
 import { action, group } from "./fields.js";
 import { figure } from "./figure.js";
+import { numberEntries, scriptEntries } from "./keep.js";
+import { menu } from "./menu.js";
 import { even, shown } from "./numbers.js";
 import { chosenTrackers, trackerList } from "./pick.js";
 import { columnsOf, recordingForm } from "./recording.js";
@@ -46,7 +48,7 @@ export function mount(element, app) {
   );
 
   element.append(
-    html("header", {}, html("h2", {}, title), html("span", { class: "space" }), compare),
+    html("header", {}, html("h2", {}, title), html("span", { class: "space" }), menu("Keep the comparison", "Keep", keepers), compare),
     html(
       "div",
       { class: "beside" },
@@ -55,6 +57,16 @@ export function mount(element, app) {
     ),
   );
   for (const kind of ["dragover", "dragleave", "drop"]) element.addEventListener(kind, recording.dragged);
+
+  function keepers() {
+    const { tracked, recording: name } = store.now;
+    if (!tracked) return [{ heading: "Track and compare first" }];
+    const args = { name, trackers: chosenTrackers(store.now), ...columnsOf(store.now) };
+    return [
+      ...numberEntries(tracked.name, tracked, tracked.comparison.rows),
+      ...scriptEntries(app, "track", args),
+    ];
+  }
 
   async function run() {
     const { recording: name } = store.now;

@@ -5,9 +5,9 @@ import { makeChart } from "./chart.js";
 import { errorsOf, finite, first, linesOf, namesOf, trajectoriesOf } from "./curves.js";
 import { figure } from "./figure.js";
 import { keepText } from "./files.js";
+import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import * as pair from "./pair.js";
-import { download } from "./pictures.js";
 import { resultTable } from "./resulttable.js";
 import { makeTrackPicture } from "./trackpicture.js";
 import * as walk from "./walk.js";
@@ -76,6 +76,7 @@ export function mount(element, app) {
 function mountAll(element, app) {
   const { store } = app;
   const table = html("div", { class: "scroll" });
+  const notes = html("ul", { class: "notes" });
   const quantity = choice("Quantity", (value) => store.set({ quantity: value }));
   const band = choice("Band", (value) => store.set({ band: value }));
   const gain = choice("Gain", (value) => store.set({ gain: value }));
@@ -87,6 +88,7 @@ function mountAll(element, app) {
 
   element.append(
     table,
+    notes,
     html(
       "div",
       { class: "pictures" },
@@ -110,6 +112,7 @@ function mountAll(element, app) {
   function drawTable({ results, hidden, sorting }) {
     if (!results) return;
     const held = table.contains(document.activeElement) ? focusOf(table) : -1;
+    notes.replaceChildren(...(results.notes ?? []).map((text) => html("li", {}, text)));
     table.replaceChildren(resultTable(results, hidden, app.toggleLine, sorting, sortBy));
     if (held >= 0) table.querySelectorAll("button")[held]?.focus();
   }
@@ -175,26 +178,12 @@ function focusOf(table) {
 
 /** What can be kept of the results. */
 function keepers(app) {
-  const { store } = app;
-  const { results, asked } = store.now;
+  const { results, asked } = app.store.now;
   if (!results) return [{ heading: "Run first" }];
-  const name = `${results.scenario}-seed${results.seed}`;
-  const keep = (command, heading, args = {}) => ({ text: heading, run: () => keepText(app, command, args, heading) });
+  const report = { text: "Report (HTML)", run: () => keepText(app, "report", {}, "Report") };
   return [
-    { text: "Numbers (JSON)", run: () => download(`${name}.json`, JSON.stringify(results, null, 1), "application/json") },
-    { text: "Table (CSV)", run: () => download(`${name}.csv`, csvOf(results), "text/csv") },
-    ...(app.can("report") ? [keep("report", "Report (HTML)")] : []),
-    ...(app.can("snippet")
-      ? [
-          keep("snippet", "Command line", { what: "command", ...asked }),
-          keep("snippet", "Python", { what: "python", ...asked }),
-        ]
-      : []),
+    ...numberEntries(`${results.scenario}-seed${results.seed}`, results, results.trackers),
+    ...(app.can("report") ? [report] : []),
+    ...scriptEntries(app, "run", asked ?? {}),
   ];
-}
-
-function csvOf({ trackers }) {
-  const columns = [...new Set(trackers.flatMap((row) => Object.keys(row)))];
-  const cell = (value) => (typeof value === "string" ? `"${value.replaceAll('"', '""')}"` : (value ?? ""));
-  return [columns.join(","), ...trackers.map((row) => columns.map((key) => cell(row[key])).join(","))].join("\n");
 }

@@ -2,7 +2,10 @@
 
 import { choice, html } from "./elements.js";
 import { action, group, numberField, textField } from "./fields.js";
+import { numberEntries, scriptEntries } from "./keep.js";
+import { menu } from "./menu.js";
 import { even, shown, withPlaces } from "./numbers.js";
+import { download } from "./pictures.js";
 import { columnsOf } from "./recording.js";
 import { told } from "./run.js";
 
@@ -24,7 +27,7 @@ export function mount(element, app) {
   const found = html("div", { class: "tuned" });
 
   element.append(
-    html("header", {}, html("h2", {}, title), html("span", { class: "space" }), start, cancel),
+    html("header", {}, html("h2", {}, title), html("span", { class: "space" }), menu("Keep the tuning", "Keep", keepers), start, cancel),
     html(
       "div",
       { class: "side" },
@@ -44,19 +47,32 @@ export function mount(element, app) {
     store.set({ tuning: { ...store.now.tuning, ...change } });
   }
 
-  async function run() {
+  /** What the command is told. */
+  function asked() {
     const { tuning, tuneOn, recording, seed } = store.now;
+    const { free: numbers, ...rest } = tuning;
+    const place = tuneOn === "recording" ? { on: recording, ...columnsOf(store.now) } : {};
+    return { ...place, ...rest, free: numbers || null, seed };
+  }
+
+  async function run() {
+    const { tuneOn, recording } = store.now;
     if (tuneOn === "recording" && !recording) {
       say("There is no recording to tune on: drop or choose one, or tune on the scenario.", "error");
       return;
     }
-    const { free: numbers, ...rest } = tuning;
-    const place = tuneOn === "recording" ? { on: recording, ...columnsOf(store.now) } : {};
     try {
-      await socket.send("tune", { ...place, ...rest, free: numbers || null, seed });
+      await socket.send("tune", asked());
     } catch (error) {
       say(error.message, "error");
     }
+  }
+
+  function keepers() {
+    const { tuned } = store.now;
+    const numbers = tuned ? numberEntries("tuning", tuned, tuned.errors) : [];
+    const text = tuned?.text ? [{ text: "Rule base (YAML)", run: () => download("tuned.yaml", tuned.text) }] : [];
+    return [...numbers, ...text, ...scriptEntries(app, "tune", asked())];
   }
 
   async function stop() {
