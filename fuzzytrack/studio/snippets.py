@@ -56,6 +56,16 @@ class PageTexts:
             raise ValueError("what: save the rule base first; a command names its file")
         return found
 
+    def all_typed(self, trackers: Sequence[str]) -> list[str]:
+        """Trackers as a command names them, each once: it refuses one that is given twice.
+
+        Raises
+        ------
+        ValueError
+            As for `typed`.
+        """
+        return list(dict.fromkeys(map(self.typed, trackers)))
+
     @property
     def typed_scenario(self) -> str:
         """The scenario as a command names it.
@@ -167,7 +177,7 @@ class RunSnippet(Snippet):
 
     def command(self) -> Command:
         """See `Snippet.command`."""
-        trackers = [self.texts.typed(text) for text in self.trackers]
+        trackers = self.texts.all_typed(self.trackers)
         options = {"trackers": trackers, "runs": self.runs, "seed": self.seed}
         return "testbed", [self.texts.typed_scenario], options
 
@@ -193,7 +203,7 @@ class TrackSnippet(Snippet):
 
     def command(self) -> Command:
         """See `Snippet.command`."""
-        trackers = [self.texts.typed(text) for text in self.trackers]
+        trackers = self.texts.all_typed(self.trackers)
         return "compare", [self.name], {"trackers": trackers, **self.options}
 
 

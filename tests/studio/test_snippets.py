@@ -33,6 +33,14 @@ def test_a_scenario_that_is_not_saved_is_in_the_script(page):
     assert page.refused("snippet", what="command").startswith("what: there is no command here")
 
 
+def test_a_command_names_a_tracker_once(page, server, monkeypatch):
+    monkeypatch.setattr(server.studio(), "command", command_line)
+    page.ask("open", name="chan-style")
+    # The rule base in the editor is the shipped one.
+    text = page.ask("snippet", what="command", trackers=["editor", "chan-style"])["text"]
+    assert text.split()[3:5] == ["--trackers", "chan-style"]
+
+
 def test_commands_name_what_is_saved(page, server, monkeypatch):
     monkeypatch.setattr(server.studio(), "command", command_line)
     arguments = {"trackers": ["editor:start=one-point", "chan-style"], "runs": 9, "seed": 2}

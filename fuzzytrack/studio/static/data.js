@@ -21,7 +21,7 @@ export function mount(element, app) {
   const picks = trackerList(app);
   const compare = action("Track and compare", run, { class: "primary" });
   const facts = html("p", { class: "muted" });
-  const notes = html("ul", { class: "notes" });
+  const notes = html("ul", { class: "notes", tabindex: 0, "aria-label": "Notes" });
   const table = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" });
   const which = select("Track", [], "", (value) => store.set({ trackShown: Number(value) }));
   const axis = select("Axis", [], "", (value) => store.set({ axisShown: Number(value) }));
@@ -88,6 +88,7 @@ export function mount(element, app) {
     empty.hidden = Boolean(tracked);
     if (!tracked) return;
     facts.textContent = factsOf(tracked);
+    notes.hidden = !tracked.notes.length;
     notes.replaceChildren(...tracked.notes.map((text) => html("li", {}, text)));
     showTable(tracked, hidden);
     which.replaceChildren(...tracked.tracks.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")));

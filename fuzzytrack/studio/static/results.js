@@ -76,7 +76,7 @@ export function mount(element, app) {
 function mountAll(element, app) {
   const { store } = app;
   const table = html("div", { class: "scroll" });
-  const notes = html("ul", { class: "notes" });
+  const notes = html("ul", { class: "notes", tabindex: 0, "aria-label": "Notes" });
   const quantity = choice("Quantity", (value) => store.set({ quantity: value }));
   const band = choice("Band", (value) => store.set({ band: value }));
   const gain = choice("Gain", (value) => store.set({ gain: value }));
@@ -112,6 +112,7 @@ function mountAll(element, app) {
   function drawTable({ results, hidden, sorting }) {
     if (!results) return;
     const held = table.contains(document.activeElement) ? focusOf(table) : -1;
+    notes.hidden = !results.notes?.length;
     notes.replaceChildren(...(results.notes ?? []).map((text) => html("li", {}, text)));
     table.replaceChildren(resultTable(results, hidden, app.toggleLine, sorting, sortBy));
     if (held >= 0) table.querySelectorAll("button")[held]?.focus();
