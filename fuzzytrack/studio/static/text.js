@@ -31,8 +31,10 @@ export function mount(element, app) {
   async function send() {
     clearTimeout(timer);
     timer = 0;
-    if (area.value === store.now.state.text) return;
-    sent = area.value;
+    const { text } = store.now.state;
+    if (area.value === withoutReturns(text)) return;
+    // A text area has no carriage returns; a file that has them keeps them.
+    sent = text.includes("\r\n") ? area.value.replaceAll("\n", "\r\n") : area.value;
     await app.edit("set_text", { text: sent });
     sent = null;
   }
@@ -83,9 +85,10 @@ export function mount(element, app) {
   store.follow(["state", "tab"], ({ state, tab }) => {
     if (!state || tab !== "text") return;
     // What is being typed is newer than the answer to what was typed before.
-    if (!timer && sent === null && area.value !== state.text) {
+    const text = withoutReturns(state.text);
+    if (!timer && sent === null && area.value !== text) {
       const { selectionStart, selectionEnd, scrollTop } = area;
-      area.value = state.text;
+      area.value = text;
       area.setSelectionRange(selectionStart, selectionEnd);
       area.scrollTop = scrollTop;
     }
@@ -103,6 +106,10 @@ export function complaintRow({ message, line, column }, go) {
     html("button", { type: "button", class: "link mono", title: "Go to the place", onclick: go }, place),
     html("span", {}, message),
   );
+}
+
+function withoutReturns(text) {
+  return text.replaceAll("\r\n", "\n");
 }
 
 /** The words of a line of YAML, each with the color of its kind. */
