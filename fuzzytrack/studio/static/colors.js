@@ -12,9 +12,6 @@ const STOPS = {
 /** Names of the scales to choose from. */
 export const PALETTES = ["viridis", "cividis", "gray"];
 
-/** Okabe and Ito's colors of lines, without yellow. */
-export const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
-
 const scales = Object.fromEntries(
   Object.entries(STOPS).map(([name, hex]) => [name, lookup(hex.match(/.{6}/g).map(rgb))]),
 );

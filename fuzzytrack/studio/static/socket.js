@@ -5,7 +5,7 @@ const LONGEST_PAUSE = 5000;
 const MOVED = 4001;
 
 /** What the server says when it does not do a command. */
-export class Refusal extends Error {
+class Refusal extends Error {
   constructor(message, where = null) {
     super(message);
     this.where = where;
