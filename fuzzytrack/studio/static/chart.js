@@ -299,7 +299,8 @@ function rowOf({ name, index, x, y, low, high, kind }, value, ranges) {
   if (kind === "bars" || kind === "steps") at = Math.min(at, y.length - 1);
   const found = y[at];
   if (at < 0 || !Number.isFinite(found)) return null;
-  const range = ranges && low && Number.isFinite(low[at]) ? ` (${shown(low[at], 3)} to ${shown(high[at], 3)})` : "";
+  const range =
+    ranges && low && Number.isFinite(low[at]) ? ` (${shown(low[at], 3)} to ${shown(high[at], 3)})` : "";
   return html(
     "div",
     { class: "row" },

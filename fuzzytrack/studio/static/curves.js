@@ -7,7 +7,9 @@ export function namesOf(results) {
 
 /** The trackers that are shown, [[name, index], ...]. */
 export function linesOf({ results, hidden }) {
-  return namesOf(results).map((name, index) => [name, index]).filter(([name]) => !hidden.includes(name));
+  return namesOf(results)
+    .map((name, index) => [name, index])
+    .filter(([name]) => !hidden.includes(name));
 }
 
 /** Curves of the error of prediction or estimate, with a band, of the trackers that are shown. */
@@ -41,7 +43,9 @@ export function trajectoriesOf({ results, hidden }) {
   const { time, truth, plots, seen, trackers } = results.sample;
   const coasted = seen.map((each) => !each);
   const lines = namesOf(results).flatMap((name, index) =>
-    hidden.includes(name) || !trackers[name] ? [] : [{ name, index, points: trackers[name].filtered, coasted }],
+    hidden.includes(name) || !trackers[name]
+      ? []
+      : [{ name, index, points: trackers[name].filtered, coasted }],
   );
   return { time, truth, plots, lines };
 }

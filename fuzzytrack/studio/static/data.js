@@ -44,11 +44,22 @@ export function mount(element, app) {
   const empty = html(
     "div",
     { class: "nothing" },
-    html("p", {}, "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared."),
+    html(
+      "p",
+      {},
+      "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared.",
+    ),
   );
 
   element.append(
-    html("header", {}, html("h2", {}, title), html("span", { class: "space" }), menu("Keep the comparison", "Keep", keepers), compare),
+    html(
+      "header",
+      {},
+      html("h2", {}, title),
+      html("span", { class: "space" }),
+      menu("Keep the comparison", "Keep", keepers),
+      compare,
+    ),
     html(
       "div",
       { class: "beside" },
@@ -91,7 +102,9 @@ export function mount(element, app) {
     notes.hidden = !tracked.notes.length;
     notes.replaceChildren(...tracked.notes.map((text) => html("li", {}, text)));
     showTable(tracked, hidden);
-    which.replaceChildren(...tracked.tracks.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")));
+    which.replaceChildren(
+      ...tracked.tracks.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")),
+    );
     which.value = String(trackShown);
     axis.replaceChildren(...AXES.slice(0, tracked.axes).map((name, k) => html("option", { value: k }, name)));
     axis.value = String(axisShown);
@@ -145,9 +158,16 @@ function innovationsOf(now) {
 
 function factsOf({ name, plots, tracks, sigma, comparison, shown: drawn }) {
   const words = [name, `${shown(plots, 7)} plots`, tracks.length > 1 ? `${drawn} tracks drawn` : "1 track"];
-  if (sigma) words.push(`σ ${[sigma].flat().map((value) => shown(value, 3)).join(", ")} m`);
+  if (sigma)
+    words.push(
+      `σ ${[sigma]
+        .flat()
+        .map((value) => shown(value, 3))
+        .join(", ")} m`,
+    );
   words.push(`${shown(comparison.scored, 7)} innovations compared`);
-  if (Number.isFinite(comparison.measured_rmse)) words.push(`RMSE of the plots ${shown(comparison.measured_rmse, 4)} m`);
+  if (Number.isFinite(comparison.measured_rmse))
+    words.push(`RMSE of the plots ${shown(comparison.measured_rmse, 4)} m`);
   return words.join(" · ");
 }
 
@@ -176,7 +196,12 @@ function comparisonTable({ comparison: { columns, rows } }, hidden, toggle) {
           html(
             "th",
             { scope: "row" },
-            html("div", {}, lineButton(row.name, index, hidden.includes(row.name), toggle), row.mark ? html("span", { class: "mark" }, row.mark) : null),
+            html(
+              "div",
+              {},
+              lineButton(row.name, index, hidden.includes(row.name), toggle),
+              row.mark ? html("span", { class: "mark" }, row.mark) : null,
+            ),
           ),
           ...columns.map(([key]) => cellOf(row, key)),
         ),

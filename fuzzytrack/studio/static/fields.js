@@ -6,9 +6,21 @@ import { shown, typed } from "./numbers.js";
 let made = 0;
 
 /** A number; `change(value)` hears of a new one, null if the field may be `empty`. `show(value)` shows one. */
-export function numberField(label, unit, change, { least = -Infinity, whole = false, title = "", empty = false } = {}) {
+export function numberField(
+  label,
+  unit,
+  change,
+  { least = -Infinity, whole = false, title = "", empty = false } = {},
+) {
   const id = `field-${(made += 1)}`;
-  const input = html("input", { id, type: "text", class: "number", inputmode: "decimal", autocomplete: "off", title });
+  const input = html("input", {
+    id,
+    type: "text",
+    class: "number",
+    inputmode: "decimal",
+    autocomplete: "off",
+    title,
+  });
   let current = null;
 
   function leave() {

@@ -41,9 +41,19 @@ function withKey(file, lines) {
     const { "stroke-dasharray": dashes } = lineStyle(index);
     root.append(
       svg("line", {
-        x1: 16, x2: 44, y1: y, y2: y, stroke: token(`--c${index % COLORS}`), "stroke-width": 2.5, "stroke-dasharray": dashes,
+        x1: 16,
+        x2: 44,
+        y1: y,
+        y2: y,
+        stroke: token(`--c${index % COLORS}`),
+        "stroke-width": 2.5,
+        "stroke-dasharray": dashes,
       }),
-      svg("text", { x: 52, y: y + 4, fill: token("--ink"), "font-size": 12, "font-family": "sans-serif" }, text),
+      svg(
+        "text",
+        { x: 52, y: y + 4, fill: token("--ink"), "font-size": 12, "font-family": "sans-serif" },
+        text,
+      ),
     );
   });
   return new XMLSerializer().serializeToString(root);

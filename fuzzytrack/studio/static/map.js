@@ -102,7 +102,9 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
 
   function setScale() {
     const [west, south, east, north] = bounds() ?? [-1000, -1000, 1000, 1000];
-    const [width, height] = [picture.clientWidth, picture.clientHeight].map((v) => Math.max(40, v - 2 * BORDER));
+    const [width, height] = [picture.clientWidth, picture.clientHeight].map((v) =>
+      Math.max(40, v - 2 * BORDER),
+    );
     const least = 1e-3 * Math.max(1, Math.abs(east), Math.abs(north));
     scale = Math.max(Math.max(east - west, least) / width, Math.max(north - south, least) / height);
     center = [(west + east) / 2, (south + north) / 2];
@@ -239,7 +241,8 @@ function grid(place, center, width, height) {
     const at = place.y(value);
     parts.push(svg("line", { class: "grid", x1: 0, x2: width, y1: at, y2: at }));
     // The corners belong to the coordinates and to the labels below.
-    if (at > 36 && at < height - 24) parts.push(svg("text", { class: "number", x: 4, y: at - 3 }, label(value)));
+    if (at > 36 && at < height - 24)
+      parts.push(svg("text", { class: "number", x: 4, y: at - 3 }, label(value)));
   }
   return parts;
 }
@@ -262,7 +265,11 @@ function scaleBar(scale, width, height) {
   const left = right - length / scale;
   return [
     svg("path", { class: "scale", d: `M${left} ${at - 5}v5H${right}v-5` }),
-    svg("text", { class: "axis", x: (left + right) / 2, y: at - 8, "text-anchor": "middle" }, distance(length)),
+    svg(
+      "text",
+      { class: "axis", x: (left + right) / 2, y: at - 8, "text-anchor": "middle" },
+      distance(length),
+    ),
   ];
 }
 
@@ -275,10 +282,6 @@ function rulerOf(place, ruler) {
   const heading = (Math.atan2(to.y - from.y, to.x - from.x) * 180) / Math.PI;
   return [
     svg("line", { class: "ruler", x1, y1, x2, y2 }),
-    svg(
-      "text",
-      { class: "ruler-text", x: x2 + 8, y: y2 - 8 },
-      `${distance(length)}, ${shown(heading, 3)}°`,
-    ),
+    svg("text", { class: "ruler-text", x: x2 + 8, y: y2 - 8 }, `${distance(length)}, ${shown(heading, 3)}°`),
   ];
 }

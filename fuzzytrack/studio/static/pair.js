@@ -12,7 +12,11 @@ export function mount(element, app) {
   const { store, socket } = app;
   const first = select("First design", [], "", (name) => choose(0, name));
   const second = select("Second design", [], "", (name) => choose(1, name));
-  const swap = html("button", { type: "button", onclick: () => store.set({ pair: [...store.now.pair].reverse() }) }, "Swap");
+  const swap = html(
+    "button",
+    { type: "button", onclick: () => store.set({ pair: [...store.now.pair].reverse() }) },
+    "Swap",
+  );
   const verdict = html("p", { class: "difference", "aria-live": "polite" });
   const note = html("p", { class: "note" }, "Run at least two trackers to compare them.");
   const lines = () => store.now.pair.map((name) => [name, namesOf(store.now.results).indexOf(name)]);
@@ -28,7 +32,11 @@ export function mount(element, app) {
     { class: "pictures" },
     figure(app, "Error over time", "pair-errors", errors, lines),
     figure(app, "Paired difference over time", "pair-difference", difference, () => []),
-    ...maps.map((map, k) => figure(app, `Trajectory, ${["first", "second"][k]}`, `pair-track-${k + 1}`, map, () => [lines()[k]], [headings[k]])),
+    ...maps.map((map, k) =>
+      figure(app, `Trajectory, ${["first", "second"][k]}`, `pair-track-${k + 1}`, map, () => [lines()[k]], [
+        headings[k],
+      ]),
+    ),
   );
   let answered = null;
 
@@ -104,13 +112,23 @@ function lineOf({ results }, name) {
 
 /** Second minus first, scan by scan, with a band of two standard errors. */
 function differenceOf(results, [one, other], { difference: y, se }) {
-  const around = (times) => y.map((value, k) => (finite(value) && finite(se[k]) ? value + times * se[k] : null));
+  const around = (times) =>
+    y.map((value, k) => (finite(value) && finite(se[k]) ? value + times * se[k] : null));
   return {
     name: `Difference of the distance of prediction, ${other} minus ${one}`,
     x: { label: "time (s)" },
     y: { label: "second − first, mean (m)" },
     limits: [{ y: 0, label: "" }],
-    series: [{ name: "difference", index: namesOf(results).indexOf(other), x: results.time, y, low: around(-2), high: around(2) }],
+    series: [
+      {
+        name: "difference",
+        index: namesOf(results).indexOf(other),
+        x: results.time,
+        y,
+        low: around(-2),
+        high: around(2),
+      },
+    ],
   };
 }
 

@@ -5,10 +5,13 @@ import { icon } from "./icons.js";
 import { menu } from "./menu.js";
 
 // What the rule base on screen is called among trackers, and as it was last saved.
-export const OWN = [["editor", "the rule base on screen"], ["saved", "as it was last saved"]];
+const OWN = [
+  ["editor", "the rule base on screen"],
+  ["saved", "as it was last saved"],
+];
 
 /** Trackers of a text: its name, and its parameters as [[name, value]]. */
-export function splitTracker(text) {
+function splitTracker(text) {
   const [name, ...parts] = text.split(":");
   return { name, parameters: parts.map((part) => part.split(/=(.*)/s).slice(0, 2)) };
 }
@@ -25,7 +28,12 @@ export function chosenTrackers({ trackers }) {
 /** The list; `store.trackers` is [{text, on}]. */
 export function trackerList({ store }) {
   const rows = html("ul", { class: "picks" });
-  const element = html("div", { class: "chosen-trackers" }, rows, html("div", { class: "actions" }, adder(), menu("Choose many", "Choose", many)));
+  const element = html(
+    "div",
+    { class: "chosen-trackers" },
+    rows,
+    html("div", { class: "actions" }, adder(), menu("Choose many", "Choose", many)),
+  );
   const open = new Set();
 
   function change(trackers) {
@@ -138,7 +146,12 @@ export function trackerList({ store }) {
             put(index, { text });
           },
         });
-        return html("label", { class: "field", title: parameter.help }, html("span", { class: "label" }, key), input);
+        return html(
+          "label",
+          { class: "field", title: parameter.help },
+          html("span", { class: "label" }, key),
+          input,
+        );
       }),
     );
   }
@@ -146,7 +159,9 @@ export function trackerList({ store }) {
   store.follow(["trackers", "hello", "scenario"], ({ trackers, hello }) => {
     if (!hello) return;
     const inside = rows.contains(document.activeElement);
-    const place = inside ? [...rows.querySelectorAll("input, button, summary")].indexOf(document.activeElement) : -1;
+    const place = inside
+      ? [...rows.querySelectorAll("input, button, summary")].indexOf(document.activeElement)
+      : -1;
     rows.replaceChildren(...trackers.map(rowOf));
     // The row was drawn anew: the focus goes back to where it was.
     if (inside) [...rows.querySelectorAll("input, button, summary")].at(place)?.focus();

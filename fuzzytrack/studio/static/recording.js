@@ -61,7 +61,12 @@ export function recordingForm({ store, socket, say }, taken) {
     html("label", { class: "field" }, html("span", { class: "label" }, "File"), chosen),
     problem,
     known,
-    html("div", { class: "form-grid" }, fields.map(([, field]) => field.element), sigma.element),
+    html(
+      "div",
+      { class: "form-grid" },
+      fields.map(([, field]) => field.element),
+      sigma.element,
+    ),
   );
 
   async function setColumn(key, text) {
@@ -76,7 +81,10 @@ export function recordingForm({ store, socket, say }, taken) {
     const text = await file.text();
     const most = store.now.hello.limits.message - OVERHEAD;
     if (JSON.stringify(text).length > most) {
-      say(`${file.name} is too large to be dropped (${shown(file.size / 1e6, 3)} MB; about 1 MB fits). Put it into the folder and choose it.`, "error");
+      say(
+        `${file.name} is too large to be dropped (${shown(file.size / 1e6, 3)} MB; about 1 MB fits). Put it into the folder and choose it.`,
+        "error",
+      );
       return;
     }
     store.set({ columns: { time: "", id: "", axes: "", truth: "" } });
@@ -119,7 +127,9 @@ export function recordingForm({ store, socket, say }, taken) {
   });
   store.follow(["uploaded"], ({ uploaded }) => {
     problem.hidden = !uploaded?.problem;
-    problem.textContent = uploaded?.problem ? `${uploaded.problem}. Name the columns below if others are meant.` : "";
+    problem.textContent = uploaded?.problem
+      ? `${uploaded.problem}. Name the columns below if others are meant.`
+      : "";
     known.hidden = !uploaded;
     known.textContent = uploaded ? `Columns: ${uploaded.columns.join(", ")}` : "";
   });

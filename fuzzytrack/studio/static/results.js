@@ -26,16 +26,29 @@ const BANDS = [
   ["se", "±2 SE", "Two standard errors to each side of the RMSE"],
   ["spread", "10–90%", "Where eight of ten runs are (of predictions)"],
 ];
-const GAINS = [["alpha", "α"], ["beta", "β"], ["gamma", "γ"]];
+const GAINS = [
+  ["alpha", "α"],
+  ["beta", "β"],
+  ["gamma", "γ"],
+];
 
 export function mount(element, app) {
   const { store } = app;
   const tabs = choice("Results as", (resultsTab) => store.set({ resultsTab }));
-  const parts = Object.fromEntries(TABS.map(([key, text]) => [key, html("div", { class: `results-${key}`, "aria-label": text, role: "group" })]));
+  const parts = Object.fromEntries(
+    TABS.map(([key, text]) => [
+      key,
+      html("div", { class: `results-${key}`, "aria-label": text, role: "group" }),
+    ]),
+  );
   const empty = html(
     "div",
     { class: "nothing" },
-    html("p", {}, "No results yet. Choose trackers on the left and press Run; results come in while it runs."),
+    html(
+      "p",
+      {},
+      "No results yet. Choose trackers on the left and press Run; results come in while it runs.",
+    ),
   );
   const about = html("span", { class: "muted" });
 
@@ -123,7 +136,9 @@ function mountAll(element, app) {
     quantity.show(QUANTITIES, what);
     band.show(BANDS, around);
     if (!results) return;
-    const known = GAINS.filter(([key]) => Object.values(results.sample.trackers).some((each) => each[key]?.some((row) => finite(first(row)))));
+    const known = GAINS.filter(([key]) =>
+      Object.values(results.sample.trackers).some((each) => each[key]?.some((row) => finite(first(row)))),
+    );
     const shownGain = known.some(([key]) => key === which) ? which : "alpha";
     gain.show(known, shownGain);
     errors.show(errorsOf(now));

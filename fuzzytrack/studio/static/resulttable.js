@@ -11,7 +11,12 @@ const COLUMNS = [
   ["predicted_rmse", "RMSE predicted", "m", "Root mean square distance of the predictions to the truth"],
   ["filtered_rmse", "RMSE filtered", "m", "Root mean square distance of the estimates to the truth"],
   ["change", "Change", "m", "Mean difference of a run's RMSE of prediction to the first tracker, paired"],
-  ["operations", "Operations", "", "Floating-point operations of one axis at one scan: scheduler + recursion"],
+  [
+    "operations",
+    "Operations",
+    "",
+    "Floating-point operations of one axis at one scan: scheduler + recursion",
+  ],
   ["predicted_mean", "Mean", "m", "Mean distance of the predictions to the truth"],
   ["predicted_variance", "Variance", "m²", "Variance of the distance of the predictions to the truth"],
   ["velocity_rmse", "RMSE velocity", "m/s", "Root mean square error of the velocity"],
@@ -37,7 +42,11 @@ export function resultTable(results, hidden, toggle, sorting, sortBy) {
   return html(
     "table",
     { class: "result-table" },
-    html("caption", { class: "unseen" }, `Results of ${results.runs} runs of ${results.scenario}, seed ${results.seed}`),
+    html(
+      "caption",
+      { class: "unseen" },
+      `Results of ${results.runs} runs of ${results.scenario}, seed ${results.seed}`,
+    ),
     html(
       "thead",
       {},
@@ -48,14 +57,22 @@ export function resultTable(results, hidden, toggle, sorting, sortBy) {
         ...columns.map(([each, text, unit, help]) =>
           html(
             "th",
-            { scope: "col", title: help, "aria-sort": key === each ? (down ? "descending" : "ascending") : null },
+            {
+              scope: "col",
+              title: help,
+              "aria-sort": key === each ? (down ? "descending" : "ascending") : null,
+            },
             sorter(text, each, sorting, sortBy),
             html("small", {}, unit),
           ),
         ),
       ),
     ),
-    html("tbody", {}, rows.map((row) => rowOf(row, columns, hidden, toggle))),
+    html(
+      "tbody",
+      {},
+      rows.map((row) => rowOf(row, columns, hidden, toggle)),
+    ),
     html(
       "tfoot",
       {},
@@ -66,7 +83,9 @@ export function resultTable(results, hidden, toggle, sorting, sortBy) {
         ...columns.map(([each]) =>
           html(
             "td",
-            each === "predicted_rmse" ? { "data-value": results.measured_rmse, title: String(results.measured_rmse) } : {},
+            each === "predicted_rmse"
+              ? { "data-value": results.measured_rmse, title: String(results.measured_rmse) }
+              : {},
             each === "predicted_rmse" ? even(results.measured_rmse, DIGITS) : "",
           ),
         ),
@@ -105,7 +124,12 @@ function rowOf(row, columns, hidden, toggle) {
     html(
       "th",
       { scope: "row" },
-      html("div", {}, lineButton(row.name, row.index, off, toggle), row.mark ? html("span", { class: "mark" }, WORDS[row.mark] ?? row.mark) : null),
+      html(
+        "div",
+        {},
+        lineButton(row.name, row.index, off, toggle),
+        row.mark ? html("span", { class: "mark" }, WORDS[row.mark] ?? row.mark) : null,
+      ),
     ),
     ...columns.map(([key]) => cellOf(row, key)),
   );
@@ -128,7 +152,11 @@ function cellOf(row, key) {
   return html(
     "td",
     { title, "data-key": key, "data-value": value },
-    key === "operations" ? shown(value, DIGITS) : known ? withPlaces(value, placesOf(error, DIGITS_OF_ERROR)) : even(value, DIGITS),
+    key === "operations"
+      ? shown(value, DIGITS)
+      : known
+        ? withPlaces(value, placesOf(error, DIGITS_OF_ERROR))
+        : even(value, DIGITS),
     known ? html("span", { class: "se" }, ` ± ${even(error, DIGITS_OF_ERROR)}`) : null,
     beside ? html("span", { class: "se" }, beside()) : null,
   );

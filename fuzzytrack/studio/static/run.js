@@ -9,7 +9,10 @@ export const title = "Run";
 export function mount(element, app) {
   const { store, socket, say } = app;
   const picks = trackerList(app);
-  const runs = numberField("Runs", "", (value) => store.set({ wantedRuns: value }), { least: 1, whole: true });
+  const runs = numberField("Runs", "", (value) => store.set({ wantedRuns: value }), {
+    least: 1,
+    whole: true,
+  });
   const seed = numberField("Seed", "", (value) => store.set({ seed: value }), {
     least: 0,
     whole: true,

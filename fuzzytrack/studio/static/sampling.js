@@ -6,23 +6,40 @@ import { group, numberField } from "./fields.js";
 // Patterns, and their numbers: label, unit, what a new one begins with, help.
 const PATTERNS = {
   regular: ["regular", []],
-  jitter: ["jitter", [["Share", "", 0.3, "Each scan is early or late by up to this share of the period, below 0.5"]]],
+  jitter: [
+    "jitter",
+    [["Share", "", 0.3, "Each scan is early or late by up to this share of the period, below 0.5"]],
+  ],
   alternate: [
     "alternating",
-    [["Short", "", 1, "Lengths of two intervals that take turns"], ["Long", "", 10, "As many times as long"]],
+    [
+      ["Short", "", 1, "Lengths of two intervals that take turns"],
+      ["Long", "", 10, "As many times as long"],
+    ],
   ],
   burst: [
     "bursts",
-    [["Plots", "", 5, "Plots of a burst"], ["Gap", "×", 20, "After a burst, as many times as long as between its plots"]],
+    [
+      ["Plots", "", 5, "Plots of a burst"],
+      ["Gap", "×", 20, "After a burst, as many times as long as between its plots"],
+    ],
   ],
   "log-uniform": [
     "log-uniform",
-    [["Shortest", "", 1, "Each interval is drawn uniformly in its logarithm"], ["Longest", "", 10, "As many times as long"]],
+    [
+      ["Shortest", "", 1, "Each interval is drawn uniformly in its logarithm"],
+      ["Longest", "", 10, "As many times as long"],
+    ],
   ],
 };
 
 export function samplingForm({ store, scenario }) {
-  const kind = select("Intervals", Object.entries(PATTERNS).map(([key, [text]]) => [key, text]), "regular", setKind);
+  const kind = select(
+    "Intervals",
+    Object.entries(PATTERNS).map(([key, [text]]) => [key, text]),
+    "regular",
+    setKind,
+  );
   const numbers = [0, 1].map((which) =>
     numberField("", "", (value) => send({ values: replaced(now().values, which, value) }), { least: 0 }),
   );

@@ -32,7 +32,10 @@ export function followScenario({ socket, store, say }) {
       const { command: name, args: given } = draftWaits;
       draftWaits = null;
       // What cannot be on the way, such as two points at one place, is refused at the end.
-      await socket.send(name, { ...given, draft: true }).then(({ state }) => take(state), () => {});
+      await socket.send(name, { ...given, draft: true }).then(
+        ({ state }) => take(state),
+        () => {},
+      );
     }
     drafting = false;
   }

@@ -49,10 +49,14 @@ export function saveScenario({ store, scenario, socket, say }) {
     } catch (error) {
       if (overwrite) say(error.message, "error");
       else {
-        ask("It was not saved", [html("p", {}, error.message)], [
-          ["Save under another name", saveAs],
-          ["Overwrite", () => saveTo(file, true)],
-        ]);
+        ask(
+          "It was not saved",
+          [html("p", {}, error.message)],
+          [
+            ["Save under another name", saveAs],
+            ["Overwrite", () => saveTo(file, true)],
+          ],
+        );
       }
     }
   }

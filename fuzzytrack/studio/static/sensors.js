@@ -3,9 +3,20 @@
 import { choice, html, select, svg } from "./elements.js";
 import { group, numberField } from "./fields.js";
 
-const SPACINGS = [["dense", "dense, 2 km"], ["medium", "medium, 5 km"], ["sparse", "sparse, 10 km"]];
-// The field of Llinas et al. (1998), section 5.2, and the plain noise of the shipped scenarios.
-const FIELD = { grid: 7, spacing: "dense", reach: 1000, range_sigma: Math.sqrt(200), bearing_sigma: 13.1 };
+const SPACINGS = [
+  ["dense", "dense, 2 km"],
+  ["medium", "medium, 5 km"],
+  ["sparse", "sparse, 10 km"],
+];
+// The field of Llinas et al. (1998), section 5.2 (variances of 200 m² and 3π/180 rad²), and the plain
+// noise of the shipped scenarios.
+const FIELD = {
+  grid: 7,
+  spacing: "dense",
+  reach: 1000,
+  range_sigma: Math.sqrt(200),
+  bearing_sigma: (Math.sqrt((3 * Math.PI) / 180) * 180) / Math.PI,
+};
 const FREE = { sigma: 115 };
 // As many circles are drawn one by one; of more only the places.
 const MOST_REACHES = 2500;
@@ -40,7 +51,9 @@ function circle(x, y, r) {
 /** The form of the sensors. */
 export function sensorForm({ store, scenario }) {
   const kind = choice("Sensors", setKind);
-  const spacing = select("Spacing", [], "", (value) => send({ spacing: SPACINGS.some(([k]) => k === value) ? value : Number(value) }));
+  const spacing = select("Spacing", [], "", (value) =>
+    send({ spacing: SPACINGS.some(([k]) => k === value) ? value : Number(value) }),
+  );
   const number = (label, unit, key, options) =>
     numberField(label, unit, (value) => send({ [key]: value }), { least: 0, ...options });
   const shared = number("Detection", "", "detection", {
@@ -105,7 +118,9 @@ export function sensorForm({ store, scenario }) {
     const word = SPACINGS.some(([key]) => key === value);
     const meters = typeof value === "number" ? value : 4000;
     spacing.replaceChildren(
-      ...[...SPACINGS, [String(meters), "another"]].map(([key, text]) => html("option", { value: key }, text)),
+      ...[...SPACINGS, [String(meters), "another"]].map(([key, text]) =>
+        html("option", { value: key }, text),
+      ),
     );
     spacing.value = word ? value : String(meters);
     own.element.hidden = word;

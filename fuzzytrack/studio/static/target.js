@@ -44,10 +44,10 @@ export function targetForm({ store, scenario }, points, writePoints) {
   const positive = { least: 1e-6 };
   const speed = numberField("Speed", "m/s", setSpeed, positive);
   const leg = numberField("Time a leg", "s", (value) => setPoints({ leg: value }), positive);
-  const period = numberField(
-    "Period", "s", (value) => setPoints({ period: value, ...timing() }),
-    { ...positive, title: FIELDS.period[2] },
-  );
+  const period = numberField("Period", "s", (value) => setPoints({ period: value, ...timing() }), {
+    ...positive,
+    title: FIELDS.period[2],
+  });
   const byPoints = html(
     "div",
     { class: "form-grid" },
@@ -66,7 +66,9 @@ export function targetForm({ store, scenario }, points, writePoints) {
     ]),
   );
   const place = ["x", "y"].map((axis, k) =>
-    numberField(`Start ${axis}`, "m", (value) => setStart(start()[0].map((old, which) => (which === k ? value : old)))),
+    numberField(`Start ${axis}`, "m", (value) =>
+      setStart(start()[0].map((old, which) => (which === k ? value : old))),
+    ),
   );
   const byMotion = html(
     "div",
@@ -85,7 +87,10 @@ export function targetForm({ store, scenario }, points, writePoints) {
 
   function setMotion(motion, change = {}) {
     const { target } = store.now.scenario;
-    const kept = TAKES[motion].map((key) => [key, typeof target?.[key] === "number" ? target[key] : BEGIN[key]]);
+    const kept = TAKES[motion].map((key) => [
+      key,
+      typeof target?.[key] === "number" ? target[key] : BEGIN[key],
+    ]);
     scenario.change("set_motion", { motion, ...Object.fromEntries(kept), ...change });
   }
 
@@ -202,7 +207,9 @@ function pointsOf(now) {
   // To about a thousandth of the path.
   const step = 10 ** Math.floor(Math.log10(Math.max(1e-3, lengthOf(all)) / 1000));
   return Array.from({ length: count }, (_, k) =>
-    all[Math.round((k * (all.length - 1)) / (count - 1))].map((value) => tidy(Math.round(value / step) * step)),
+    all[Math.round((k * (all.length - 1)) / (count - 1))].map((value) =>
+      tidy(Math.round(value / step) * step),
+    ),
   );
 }
 

@@ -17,7 +17,10 @@ export function trajectoryLayer(read) {
     const { truth = [], plots = [], lines = [], upto = Infinity } = read();
     const put = ([x, y = 0]) => (known(x) && known(y) ? [place.x(x), place.y(y)] : [NaN, NaN]);
     const until = (list) => list.slice(0, upto);
-    const dots = until(plots).map(put).filter(([x]) => known(x)).slice(-MOST_PLOTS);
+    const dots = until(plots)
+      .map(put)
+      .filter(([x]) => known(x))
+      .slice(-MOST_PLOTS);
     element.replaceChildren(
       svg("path", { class: "truth", d: pathOf(truth.map(put)) }),
       svg("path", { class: "plots", d: dots.map(([x, y]) => cross(x, y)).join("") }),

@@ -14,12 +14,17 @@ export const title = "Tune";
 export function mount(element, app) {
   const { store, socket, say } = app;
   const on = choice("Tune on", (tuneOn) => store.set({ tuneOn }));
-  const tracker = textField("Tracker", "editor, a rule base, or kalman-cv:sigma_v=2", (text) => put({ tracker: text }));
+  const tracker = textField("Tracker", "editor, a rule base, or kalman-cv:sigma_v=2", (text) =>
+    put({ tracker: text }),
+  );
   const free = textField("Numbers to tune", "all; or e.g. outputs, E.ns", (text) => put({ free: text }));
   const whole = { least: 1, whole: true };
   const trials = numberField("Trials", "", (value) => put({ trials: value }), whole);
   const folds = numberField("Folds", "", (value) => put({ folds: value }), { least: 2, whole: true });
-  const runs = numberField("Runs", "", (value) => put({ runs: value }), { ...whole, title: "Runs of the scenario" });
+  const runs = numberField("Runs", "", (value) => put({ runs: value }), {
+    ...whole,
+    title: "Runs of the scenario",
+  });
   const start = action("Tune", run, { class: "primary" });
   const cancel = html("button", { type: "button", onclick: stop }, "Cancel");
   const bar = html("progress", { max: 1, "aria-label": "Progress of tuning" });
@@ -27,7 +32,15 @@ export function mount(element, app) {
   const found = html("div", { class: "tuned" });
 
   element.append(
-    html("header", {}, html("h2", {}, title), html("span", { class: "space" }), menu("Keep the tuning", "Keep", keepers), start, cancel),
+    html(
+      "header",
+      {},
+      html("h2", {}, title),
+      html("span", { class: "space" }),
+      menu("Keep the tuning", "Keep", keepers),
+      start,
+      cancel,
+    ),
     html(
       "div",
       { class: "side" },
@@ -71,7 +84,9 @@ export function mount(element, app) {
   function keepers() {
     const { tuned } = store.now;
     const numbers = tuned ? numberEntries("tuning", tuned, tuned.errors) : [];
-    const text = tuned?.text ? [{ text: "Rule base (YAML)", run: () => download("tuned.yaml", tuned.text) }] : [];
+    const text = tuned?.text
+      ? [{ text: "Rule base (YAML)", run: () => download("tuned.yaml", tuned.text) }]
+      : [];
     return [...numbers, ...text, ...scriptEntries(app, "tune", asked())];
   }
 
@@ -89,12 +104,19 @@ export function mount(element, app) {
   }
 
   async function openInEditor(text) {
-    if (await app.edit("set_text", { text })) say("The tuned rule base is in the editor; undo takes it back.");
+    if (await app.edit("set_text", { text }))
+      say("The tuned rule base is in the editor; undo takes it back.");
     app.show({ tab: "table" });
   }
 
   store.follow(["tuneOn"], ({ tuneOn }) =>
-    on.show([["scenario", "the scenario"], ["recording", "the recording"]], tuneOn),
+    on.show(
+      [
+        ["scenario", "the scenario"],
+        ["recording", "the recording"],
+      ],
+      tuneOn,
+    ),
   );
   store.follow(["tuning"], ({ tuning }) => {
     tracker.show(tuning.tracker);
@@ -120,8 +142,16 @@ export function mount(element, app) {
     if (!tuned) return;
     const { verdict, text, specification } = tuned;
     const use = text
-      ? html("button", { type: "button", class: "primary", onclick: () => openInEditor(text) }, "Open in the editor")
-      : html("button", { type: "button", class: "primary", onclick: () => choose(specification) }, "Add to the trackers");
+      ? html(
+          "button",
+          { type: "button", class: "primary", onclick: () => openInEditor(text) },
+          "Open in the editor",
+        )
+      : html(
+          "button",
+          { type: "button", class: "primary", onclick: () => choose(specification) },
+          "Add to the trackers",
+        );
     found.replaceChildren(
       html("p", {}, `${verdict[0].toUpperCase()}${verdict.slice(1)}.`),
       ...tablesOf(tuned),
@@ -143,7 +173,11 @@ function tablesOf({ errors, objective, units, numbers, start }) {
     html(
       "table",
       { class: "result-table" },
-      html("caption", {}, `${objective}, on ${units} that it was not tuned on, and the change to the tuned one`),
+      html(
+        "caption",
+        {},
+        `${objective}, on ${units} that it was not tuned on, and the change to the tuned one`,
+      ),
       html(
         "tbody",
         {},
@@ -153,7 +187,11 @@ function tablesOf({ errors, objective, units, numbers, start }) {
             {},
             html("th", { scope: "row" }, name),
             html("td", { "data-value": value }, even(value, 4)),
-            html("td", { class: "se", title: `95 % interval ${inWords(low)} to ${inWords(high)}` }, inWords(change)),
+            html(
+              "td",
+              { class: "se", title: `95 % interval ${inWords(low)} to ${inWords(high)}` },
+              inWords(change),
+            ),
           ),
         ),
       ),

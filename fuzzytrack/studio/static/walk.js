@@ -15,16 +15,36 @@ const PLAY_MS = 180;
 
 export function mount(element, app) {
   const { store, socket, say } = app;
-  const tracker = select("Tracker", [], "", (value) => store.set({ walked: { ...store.now.walked, tracker: value } }));
-  const run = numberField("Run", "", (value) => store.set({ walked: { ...store.now.walked, run: value } }), { least: 0, whole: true });
-  const slider = html("input", { type: "range", min: 0, value: 0, step: 1, "aria-label": "Scan", oninput: () => go(Number(slider.value)) });
+  const tracker = select("Tracker", [], "", (value) =>
+    store.set({ walked: { ...store.now.walked, tracker: value } }),
+  );
+  const run = numberField("Run", "", (value) => store.set({ walked: { ...store.now.walked, run: value } }), {
+    least: 0,
+    whole: true,
+  });
+  const slider = html("input", {
+    type: "range",
+    min: 0,
+    value: 0,
+    step: 1,
+    "aria-label": "Scan",
+    oninput: () => go(Number(slider.value)),
+  });
   const play = html("button", { type: "button", onclick: toggle }, "Play");
   const when = html("output", { class: "mono" });
   const plot = html("dl", { class: "plot-facts" });
-  const rules = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Rules that fire" });
+  const rules = html("div", {
+    class: "scroll",
+    tabindex: 0,
+    role: "region",
+    "aria-label": "Rules that fire",
+  });
   const innovations = makeChart((value) => goTo(value));
   const gains = makeChart((value) => goTo(value));
-  const marks = markLayer(() => walk, () => at);
+  const marks = markLayer(
+    () => walk,
+    () => at,
+  );
   const track = makeTrackPicture("The track up to the scan of the slider", soFar, [marks], () => walk.t[at]);
   const innovationKey = html("span", {});
   const gainKey = html("span", {});
@@ -34,7 +54,9 @@ export function mount(element, app) {
     { class: "pictures" },
     figure(app, "Track", "walk-track", track, () => []),
     html("div", { class: "picture" }, html("h3", {}, "At this scan"), plot, rules),
-    figure(app, "Innovation", "walk-innovation", innovations, () => linesIn(innovationsOf(walk, null)), [innovationKey]),
+    figure(app, "Innovation", "walk-innovation", innovations, () => linesIn(innovationsOf(walk, null)), [
+      innovationKey,
+    ]),
     figure(app, "Gains", "walk-gains", gains, () => linesIn(gainsOf(walk, null)), [gainKey]),
   );
   let walk = null;
@@ -126,7 +148,12 @@ export function mount(element, app) {
   function soFar() {
     if (!walk) return {};
     const coasted = walk.seen.map((seen) => !seen);
-    const line = { name: tracker.value, index: Math.max(0, tracker.selectedIndex), points: walk.estimates, coasted };
+    const line = {
+      name: tracker.value,
+      index: Math.max(0, tracker.selectedIndex),
+      points: walk.estimates,
+      coasted,
+    };
     return { time: walk.t, truth: walk.truth ?? [], plots: walk.plots, upto: at + 1, lines: [line] };
   }
 
@@ -217,7 +244,10 @@ function factsOf({ seen, plots, predicted, innovations, gains }, scan) {
       ? `${list[scan].map((value) => shown(value, 5)).join(", ")} ${unit}`
       : "–";
   const gain = (list) => {
-    const values = [list?.[scan]].flat().filter((value) => Number.isFinite(value)).map((value) => shown(value, 4));
+    const values = [list?.[scan]]
+      .flat()
+      .filter((value) => Number.isFinite(value))
+      .map((value) => shown(value, 4));
     return [...new Set(values)].join(", ") || "–";
   };
   const facts = [
@@ -227,14 +257,22 @@ function factsOf({ seen, plots, predicted, innovations, gains }, scan) {
     ["α", gain(gains.alpha)],
     ["β", gain(gains.beta)],
   ];
-  if ([gains.gamma?.[scan]].flat().some((value) => Number.isFinite(value) && value !== 0)) facts.push(["γ", gain(gains.gamma)]);
+  if ([gains.gamma?.[scan]].flat().some((value) => Number.isFinite(value) && value !== 0))
+    facts.push(["γ", gain(gains.gamma)]);
   return facts.flatMap(([name, value]) => [html("dt", {}, name), html("dd", {}, value)]);
 }
 
 /** Tables of the rules that fire, one for each axis, or one if the axes share their gains; `explain` shows a point. */
 function rulesOf(lanes, explain) {
   const known = lanes.filter(Boolean);
-  if (!known.length) return [html("p", { class: "note" }, "No rule fires here: the track is not started, or its gains come from no rule base.")];
+  if (!known.length)
+    return [
+      html(
+        "p",
+        { class: "note" },
+        "No rule fires here: the track is not started, or its gains come from no rule base.",
+      ),
+    ];
   return known.map(({ values, rules }, k) =>
     html(
       "table",
@@ -243,7 +281,9 @@ function rulesOf(lanes, explain) {
         "caption",
         {},
         known.length > 1 ? `${AXES[k]}: ` : "",
-        Object.entries(values).map(([name, value]) => `${name} = ${shown(value, 4)}`).join(", "),
+        Object.entries(values)
+          .map(([name, value]) => `${name} = ${shown(value, 4)}`)
+          .join(", "),
         explain
           ? html("button", { type: "button", class: "link", onclick: () => explain(values) }, "in the rules")
           : null,
@@ -251,7 +291,9 @@ function rulesOf(lanes, explain) {
       html(
         "tbody",
         {},
-        rules.map(({ text, strength }) => html("tr", {}, html("td", {}, bar(strength)), html("td", {}, text))),
+        rules.map(({ text, strength }) =>
+          html("tr", {}, html("td", {}, bar(strength)), html("td", {}, text)),
+        ),
       ),
     ),
   );

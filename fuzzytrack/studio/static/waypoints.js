@@ -211,7 +211,11 @@ export function waypointList(write) {
       const k = index();
       const next = points[k + 1] ?? points[k].map((value, axis) => 2 * value - points[k - 1][axis]);
       const share = points[k + 1] ? 0.5 : 1;
-      points.splice(k + 1, 0, points[k].map((value, axis) => tidy(value + share * (next[axis] - value))));
+      points.splice(
+        k + 1,
+        0,
+        points[k].map((value, axis) => tidy(value + share * (next[axis] - value))),
+      );
       write(points);
     };
     const remove = () => write(now.filter((_, k) => k !== index()));
@@ -220,7 +224,11 @@ export function waypointList(write) {
       html(
         "td",
         { class: "row-tools" },
-        html("button", { type: "button", class: "quiet", title: "Insert after", onclick: insert }, icon("add")),
+        html(
+          "button",
+          { type: "button", class: "quiet", title: "Insert after", onclick: insert },
+          icon("add"),
+        ),
         html("button", { type: "button", class: "quiet", title: "Delete", onclick: remove }, icon("remove")),
       ),
     );

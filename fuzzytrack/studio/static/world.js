@@ -74,15 +74,25 @@ export function mount(element, app) {
       saveScenario(app),
       html("span", { class: "space" }),
       draw,
-      pictureMenu("the map", () => `${store.now.scenario.name}-map`, () =>
-        svgFile((map.element.hidden ? overTime : map).picture, token("--panel")),
+      pictureMenu(
+        "the map",
+        () => `${store.now.scenario.name}-map`,
+        () => svgFile((map.element.hidden ? overTime : map).picture, token("--panel")),
       ),
     ),
     html(
       "div",
       { class: "beside" },
       html("div", { class: "tall" }, map.element, overTime.element, facts),
-      html("div", { class: "side" }, complaints, target.element, sensors.element, sampling.element, text.element),
+      html(
+        "div",
+        { class: "side" },
+        complaints,
+        target.element,
+        sensors.element,
+        sampling.element,
+        text.element,
+      ),
     ),
   );
 
@@ -154,7 +164,9 @@ export function mount(element, app) {
     const dots = at.length <= MOST_DOTS ? at : [];
     track.replaceChildren(
       svg("path", { class: "truth", d: pathOf(at) }),
-      ...(hasHandles() ? [] : at.slice(0, 1)).map(([x, y]) => svg("path", { class: "scan", d: `M${x - 5} ${y - 5}h10v10h-10z` })),
+      ...(hasHandles() ? [] : at.slice(0, 1)).map(([x, y]) =>
+        svg("path", { class: "scan", d: `M${x - 5} ${y - 5}h10v10h-10z` }),
+      ),
       ...dots.map(([cx, cy]) => svg("circle", { class: "scan", cx, cy, r: 2 })),
     );
   }
@@ -169,7 +181,9 @@ export function mount(element, app) {
     facts.textContent = factsOf(now);
     complaints.hidden = !now.complaints.length;
     complaints.replaceChildren(
-      ...now.complaints.map(({ message, line }) => html("li", {}, line ? `Line ${line}: ${message}` : message)),
+      ...now.complaints.map(({ message, line }) =>
+        html("li", {}, line ? `Line ${line}: ${message}` : message),
+      ),
     );
     showAxes();
     // Another scenario is shown whole; a change of this one leaves the map where it is.
@@ -183,8 +197,17 @@ export function mount(element, app) {
 
 /** The whole text, for all that the forms do not have. */
 function textForm({ store, scenario }) {
-  const area = html("textarea", { class: "mono", rows: 14, spellcheck: "false", "aria-label": "Scenario in YAML" });
-  const apply = html("button", { type: "button", onclick: () => scenario.change("set_scenario_text", { text: area.value }) }, "Apply");
+  const area = html("textarea", {
+    class: "mono",
+    rows: 14,
+    spellcheck: "false",
+    "aria-label": "Scenario in YAML",
+  });
+  const apply = html(
+    "button",
+    { type: "button", onclick: () => scenario.change("set_scenario_text", { text: area.value }) },
+    "Apply",
+  );
   const element = group(
     "Text",
     html("details", {}, html("summary", {}, "Scenario in YAML"), area, html("div", { class: "row" }, apply)),
@@ -203,7 +226,9 @@ function factsOf({ scenario: { scans, tracks, time, truth, sensors } }) {
   const words = [`${scans} scans`, `${shown(time.at(-1) - time[0], 5)} s`, `path ${distance(length)}`];
   if (tracks > 1) words.push(`the first of ${tracks} tracks is drawn`);
   if (sensors.kind === "field" && sensors.positions.length * all.length < MOST_PAIRS) {
-    const seen = all.filter((point) => sensors.positions.some((at, k) => apart(at, point) <= radius(sensors, k)));
+    const seen = all.filter((point) =>
+      sensors.positions.some((at, k) => apart(at, point) <= radius(sensors, k)),
+    );
     words.push(`${seen.length} of ${all.length} positions within reach of a sensor`);
   }
   return words.join(" · ");
@@ -219,9 +244,14 @@ function middlesOf(now) {
   const ends = times ?? waypoints.map((_, k) => time[0] + (k / legs) * (time.at(-1) - time[0]));
   return waypoints.slice(1).map((_, k) => {
     const middle = (ends[k] + ends[k + 1]) / 2;
-    const after = Math.max(1, time.findIndex((each) => each >= middle));
+    const after = Math.max(
+      1,
+      time.findIndex((each) => each >= middle),
+    );
     const share = (middle - time[after - 1]) / (time[after] - time[after - 1]);
-    return [0, 1].map((axis) => truth[after - 1][axis] + share * (truth[after][axis] - truth[after - 1][axis]));
+    return [0, 1].map(
+      (axis) => truth[after - 1][axis] + share * (truth[after][axis] - truth[after - 1][axis]),
+    );
   });
 }
 
