@@ -1,6 +1,10 @@
 """The command that serves the studio, as far as it can be run without a browser."""
 
+import re
+import signal
+import subprocess
 import sys
+import urllib.request
 
 import pytest
 
@@ -40,3 +44,21 @@ def test_a_port_in_use_is_said(fails, tmp_path):
         number = taken.getsockname()[1]
         line = fails("studio", tmp_path, "--no-browser", "--port", number)
     assert line.startswith(f"error: --port: cannot listen at 127.0.0.1, port {number}: ")
+
+
+def test_it_serves_a_page_until_it_is_interrupted(tmp_path):
+    pytest.importorskip("uvicorn", reason="needs the extra studio")
+    words = [sys.executable, "-m", "fuzzytrack", "studio", str(tmp_path), "--no-browser"]
+    with subprocess.Popen(
+        [*words, "--port", "0"], stdout=subprocess.PIPE, text=True, encoding="utf-8"
+    ) as server:
+        try:
+            line = server.stdout.readline()
+            found = re.fullmatch(r"studio at (http://127\.0\.0\.1:\d+/)#token=[\w-]{32}\n", line)
+            assert server.stdout.readline() == "stop it with Ctrl-C\n"
+            with urllib.request.urlopen(found[1], timeout=60) as answer:
+                assert answer.status == 200
+            server.send_signal(signal.SIGINT)
+            assert server.wait(60) == 0
+        finally:
+            server.kill()

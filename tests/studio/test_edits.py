@@ -50,6 +50,31 @@ def test_edits_change_the_text_and_can_be_undone(page):
     assert page.ask("redo")["state"]["redo"] == 5
 
 
+def test_sets_come_and_go(page):
+    answer = page.ask("add_set", variable="damping", set="XL", shape="trimf",
+                      parameters=[0.8, 0.85, 0.89])  # fmt: skip
+    sets = answer["state"]["rulebase"]["outputs"][1]["sets"]
+    assert "XL" in [each["name"] for each in sets]
+    found = page.ask("remove_set", variable="damping", set="XL")["state"]
+    assert found["rulebase"]["outputs"][1]["sets"] != sets
+    text = page.ask("write_out", variable="dE")["state"]
+    assert text["rulebase"]["inputs"][0]["shared_with"] == []
+    page.ask("add_set", variable="E", set="mid", shape="trimf", parameters=[0, 0.05, 0.1],
+             like="ze")  # fmt: skip
+    table = page.ask("undo")["state"]["rulebase"]["rules"]
+    assert len(table["column_sets"]) == 7
+    assert "is used by the rules for" in page.refused("remove_set", variable="damping", set="L")
+
+
+def test_a_complaint_names_the_set_that_it_is_about(page):
+    text = page.hello["state"]["text"]
+    (complaint,) = page.ask("set_text", text=text.replace("trimf", "trymf", 1))["state"][
+        "complaints"
+    ]
+    assert complaint["where"].keys() == {"variable", "set"}
+    assert "unknown shape" in complaint["message"]
+
+
 def test_a_drag_is_undone_as_one(page):
     for width in (0.11, 0.12, 0.13):
         drag = {"variable": "E", "set": "ze", "parameters": [-width, 0, width]}
@@ -121,6 +146,17 @@ def test_gains_and_their_certificate(page):
     refuted = page.ask("certify", steps=[1, 4])
     assert refuted["verdict"] == "refuted"
     assert refuted["counter_example"][0].keys() >= {"alpha", "beta"}
+
+
+def test_gains_that_do_not_follow_from_the_outputs_alone(page):
+    """Those of a covariance depend on what came before."""
+    page.ask("open", name="maneuver")
+    found = page.ask("gains")
+    assert (found["reachable"], found["hull"]) == ([], [])
+    assert page.ask("certify")["verdict"] in ("certified", "not decided")
+    inputs = page.ask("open", name="maneuver")["state"]["rulebase"]["inputs"]
+    point = {v["name"]: sum(v["universe"][:2]) / 2 for v in inputs}
+    assert page.ask("explain", inputs=point)["gains"] is None
 
 
 def test_a_list_of_rules_and_one_input_are_shown(page):

@@ -1,0 +1,45 @@
+"""Work in threads that does not come to an end."""
+
+import asyncio
+import threading
+
+import pytest
+
+from fuzzytrack.studio import threads
+from fuzzytrack.studio.threads import Threads
+
+
+def test_what_hangs_is_given_up_and_not_begun_without_end(monkeypatch):
+    monkeypatch.setattr(threads, "SECONDS", 0.01)
+    monkeypatch.setattr(threads, "_MOST_STUCK", 2)
+    go = threading.Event()
+
+    def late():
+        go.wait(60)
+        raise KeyError("nobody hears of this")
+
+    async def work():
+        found = Threads()
+        for _ in range(2):
+            with pytest.raises(ValueError, match=r"this took longer than 0\.01 s"):
+                await found.run(late)
+        with pytest.raises(ValueError, match="busy with work that does not end"):
+            await found.run(late)
+        go.set()
+        monkeypatch.setattr(threads, "SECONDS", 60.0)
+        for _ in range(1000):
+            try:
+                return await found.run(lambda: "done")
+            except ValueError:
+                await asyncio.sleep(0.01)
+        return None
+
+    assert asyncio.run(work()) == "done"
+
+
+def test_what_is_raised_arrives():
+    def wrong():
+        raise KeyError("x")
+
+    with pytest.raises(KeyError, match="x"):
+        asyncio.run(Threads().run(wrong))
