@@ -5,12 +5,7 @@ const LONGEST_PAUSE = 5000;
 const MOVED = 4001;
 
 /** What the server says when it does not do a command. */
-class Refusal extends Error {
-  constructor(message, where = null) {
-    super(message);
-    this.where = where;
-  }
-}
+class Refusal extends Error {}
 
 /** Open the connection and keep it open; `heard(event, message)` gets "open", "close" and pushes. */
 export function connect(token, heard) {
@@ -50,7 +45,7 @@ export function connect(token, heard) {
     pending.delete(message.seq);
     if (!asked) return;
     if (message.error === undefined) asked.resolve(message.result);
-    else asked.reject(new Refusal(message.error, message.where));
+    else asked.reject(new Refusal(message.error));
   }
 
   function draw(buffer) {
