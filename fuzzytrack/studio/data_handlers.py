@@ -76,7 +76,9 @@ def tune(page: Page, given: Arguments) -> Later:
     """Start the tuning of a tracker, on a recording or the scenario of the page."""
     text = given.text("on", None)
     data: Scenario | Recorded = page.session.reading.scenario
-    if text is not None:
+    if text is None:
+        page.session.check_loads("scenario")
+    else:
         data = _recorded(page.studio.uploads.path(page.key, text), given)
     free = given.text("free", None)
     tuning = Tuning(
@@ -105,6 +107,7 @@ def _tuned(page: Page, text: str) -> RuleBase | str:
             raise ValueError(
                 "tracker: 'editor' takes no parameters here; save it, and name the file"
             )
+        page.session.check_loads("rules")
         return page.session.reading.rules
     if is_file(name):
         return str(page.studio.folder.place(name)) + text.strip()[len(name) :]

@@ -9,6 +9,7 @@ import numpy as np
 
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.specs import split
 from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
@@ -31,6 +32,7 @@ def run(page: Page, given: Arguments) -> Later:
     texts = given.texts("trackers")
     runs = given.whole("runs", 1, MOST_RUNS)
     seed = given.whole("seed", 0, _MOST_SEED, 0)
+    page.session.check_loads("scenario")
     scenario = page.session.reading.scenario
     make = trackers_of(page, texts)
 
@@ -46,6 +48,8 @@ def run(page: Page, given: Arguments) -> Later:
 
 def trackers_of(page: Page, texts: list[str]) -> Any:
     """Function that makes trackers of texts, with the rule base as it is now."""
+    if any(split(text, "tracker")[0] == EDITOR for text in texts):
+        page.session.check_loads("rules")
     rules = page.session.reading.rules
     saved = page.session.saved_text("rules")
 
@@ -73,6 +77,7 @@ def walk_run(page: Page, given: Arguments) -> Later:
     make = trackers_of(page, [given.text("tracker")])
     seed = given.whole("seed", 0, _MOST_SEED, 0)
     number = given.whole("run", 0, MOST_RUNS - 1, 0)
+    page.session.check_loads("scenario")
     scenario = page.session.reading.scenario
 
     def work() -> Answer:

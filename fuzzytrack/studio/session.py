@@ -116,6 +116,22 @@ class Session:
         """The texts as they are."""
         return self._history.now
 
+    def check_loads(self, kind: str) -> None:
+        """Refuse to go on where a text does not load: `reading` then has an older one.
+
+        Raises
+        ------
+        FileError, ValueError
+            With what is wrong with it.
+        """
+        self._open_text(kind)
+        broken = [each for each in self._reading.complaints[kind] if each.stops]
+        if broken:
+            raise FileError(
+                f"the text of the {_WORDS[kind]} does not load: {broken[0].message}; mend it "
+                "first, or undo"
+            )
+
     @property
     def steps(self) -> tuple[int, int]:
         """How many edits can be undone, and redone."""
@@ -155,12 +171,7 @@ class Session:
         rest = dict(arguments)
         kind = rest.pop("kind", None) if command in OF_ANY_TEXT else "rules"
         old = self._open_text(kind)
-        broken = [each for each in self._reading.complaints[kind] if each.stops]
-        if broken:
-            raise FileError(
-                f"the text of the {_WORDS[kind]} does not load: {broken[0].message}; mend it "
-                "first, or undo"
-            )
+        self.check_loads(kind)
         new = edited(old.text, command, rest)
         if not isinstance(new, EditedText):
             self._check(kind, old.name, new)

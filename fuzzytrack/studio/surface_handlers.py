@@ -126,6 +126,7 @@ def _reached(system: FuzzySystem) -> Array:
 
 def prove(page: Page, given: Arguments) -> Later:
     """Whether tracks stay stable in whatever order the gains are used."""
+    page.session.check_loads("rules")
     rules = page.session.reading.rules
     steps = given.numbers("steps", None)
     if steps is not None and len(steps) != 2:

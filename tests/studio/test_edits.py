@@ -110,6 +110,10 @@ def test_a_text_that_does_not_load_keeps_the_last_rule_base(page):
     assert state["rulebase"]["rules"]["cells"][row][column]["text"] == "S-S"
     assert complaint["line"] == 1 + text[: text.index("S-S")].count("\n")
     assert "does not load" in page.refused("set_cell", row=0, column=0, text="M-Z")
+    assert "does not load" in page.refused("run", trackers=["editor"], runs=1)
+    assert "does not load" in page.refused("walk", tracker="editor:start=one-point")
+    assert "does not load" in page.refused("tune")
+    assert "does not load" in page.refused("certify")
     assert page.ask("set_text", text=text)["state"]["complaints"] == []
 
 

@@ -94,6 +94,11 @@ def test_a_text_that_is_no_scenario_keeps_the_last(page):
     assert found["complaints"][0]["message"] == "the scenario lacks the key 'target'"
     assert found["scenario"]["name"] == "turn"
     assert found["target"] is None
+    # It is shown, but no numbers are made of it as if it were the text.
+    message = page.refused("run", trackers=["chan-style"], runs=1)
+    assert message.startswith("the text of the scenario does not load: the scenario lacks the key")
+    assert page.refused("walk", tracker="chan-style") == message
+    assert page.refused("tune", tracker="chan-style") == message
     text = "scenario: 1\nname: x\ntarget: {file: ../x.csv}\nsensors: {sigma: 1}\n"
     found = page.ask("set_scenario_text", text=text)["state"]
     assert "with no folder before it" in found["complaints"][0]["message"]
