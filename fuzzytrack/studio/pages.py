@@ -57,6 +57,8 @@ class Page:
         The last one that the page has started.
     run : Run or None
         The last Monte Carlo experiment that the page has started.
+    run_job : Job or None
+        Its job.
     """
 
     def __init__(self, key: str, studio: Studio, session: Session) -> None:
@@ -68,6 +70,7 @@ class Page:
         self._drags = 0
         self.job: Job | None = None
         self.run: Run | None = None
+        self.run_job: Job | None = None
         self.used = time.monotonic()
         self._connection: Line | None = None
 

@@ -40,7 +40,7 @@ def run(page: Page, given: Arguments) -> Later:
         started = Run(scenario, make(), runs, seed)
         started.check()
         page.job = page.studio.jobs.start("run", runs, run_work(started), page.report)
-        page.run = started
+        page.run, page.run_job = started, page.job
         return {"job": page.job.number}
 
     return Later(work)

@@ -54,11 +54,15 @@ def test_a_recording_is_tracked_and_compared_as_by_the_command(page, csv, tmp_pa
 
 def test_a_rule_base_is_tuned_and_opens_in_the_editor(page, csv):
     page.ask("upload", name="mine.csv", text=csv)
+    page.job(page.ask("run", trackers=TRACKERS[:1], runs=2)["job"])
     number = page.ask("tune", on="mine.csv", id="id", free="outputs", trials=4, folds=2)["job"]
     last = page.job(number)[-1]
     assert last["state"] == "done", last["error"]
     found = last["results"]
     assert found["text"] is not None
+    hello = page.ask("hello", session=page.hello["session"])
+    assert (hello["job"]["kind"], hello["run"]["kind"]) == ("tune", "run")
+    assert hello["run"]["results"]["runs"] == 2
     assert found["before"] > 0
     assert loads_rulebase(found["text"]).output_names == ("stiffness", "damping")
     state = page.ask("set_text", text=found["text"])["state"]
