@@ -103,11 +103,12 @@ docs: $(VENV)/.installed-docs ## Build the documentation into docs/_build/html; 
 walk: ## Run every command of README and quickstart in a fresh clone, with nothing but PATH
 	$(PYTHON) .ci/walk.py
 
-fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases and rows of CSV, FUZZ_FILES files of each other format and scans
+fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases and rows of CSV, FUZZ_FILES files of each other format, scans and messages
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_readers.py --count $(FUZZ_FILES)
 	$(BIN)/python tests/fuzz_files.py --rows $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_scans.py --scans $(FUZZ_FILES)
+	$(BIN)/python tests/fuzz_studio.py --count $(FUZZ_FILES)
 	HYPOTHESIS_PROFILE=free $(BIN)/python -m pytest $(PYTEST_ARGS) -m hypothesis
 
 bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)

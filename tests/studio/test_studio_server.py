@@ -3,7 +3,6 @@
 import contextlib
 import http.client
 import json
-import random
 
 import pytest
 
@@ -112,27 +111,8 @@ def test_a_bomb_of_yaml_is_a_complaint(page):
     page.ask("undo")
 
 
-def test_random_messages_are_answered_or_refused(server):
-    """No message ends the server or the socket, and none is without an answer."""
-    random.seed(1)
-    from fuzzytrack.studio.command_table import HANDLERS
-
-    def value(depth=0):
-        kinds = [None, True, -1, 10**30, 0.5, "", "stiffness-damping", "../x", "\ud800", "x" * 300]
-        kinds += [] if depth > 2 else [[value(depth + 1)], {"E": value(depth + 1)}]
-        return random.choice(kinds)
-
-    left_out = ("run", "hello", "save", "save_scenario")
+def test_what_is_no_command_is_refused(server):
     with server.page() as page:
-        for number in range(1000, 1400):
-            name = random.choice([n for n in HANDLERS if n not in left_out])
-            names = [n for n in HANDLERS[name].names if random.random() < 0.8]
-            names += ["x"] if random.random() < 0.05 else []
-            arguments = {n: value() for n in names}
-            text = json.dumps({"seq": number, "command": name, "arguments": arguments})
-            page.socket.send(text)
-            found = page.wait(number)
-            assert not isinstance(found, dict) or "error" in found or "result" in found
         for text in ("", "[]", "{}", "\x00", "[" * 1000, '{"seq": 1e99}', '{"seq": 5}'):
             page.socket.send(text)
             assert page.receive()[1]["error"]

@@ -16,7 +16,7 @@ let charts = 0;
  * is "line", "bars", "dots" or "steps"; `chosen(value)` hears of clicks on the picture.
  */
 export function makeChart(chosen = null) {
-  const picture = svg("svg", { class: "chart", role: "img" });
+  const picture = svg("svg", { class: "chart", role: "img", "aria-label": "nothing yet" });
   const readout = html("div", { class: "readout", hidden: true });
   const spoken = html("p", { class: "unseen", "aria-live": "polite" });
   const element = html(
