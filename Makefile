@@ -47,7 +47,7 @@ $(VENV)/.installed-%: pyproject.toml | $(BIN)/python
 
 # All extras at once: pip then looks each package up once.
 environment: pyproject.toml | $(BIN)/python ## Install what test, lint and docs need
-	$(PIP) install $(PIP_ARGS) --editable '.[test,docs]'
+	$(PIP) install $(PIP_ARGS) --editable '.[test,docs,browser]'
 	@touch $(VENV)/.installed-test $(VENV)/.installed-docs
 
 lowest-environment: $(LOWEST)/.installed

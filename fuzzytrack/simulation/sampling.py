@@ -142,7 +142,14 @@ class Sampling:
             Number of a scan, from 0.
         time : ndarray
             As for `times`.
+
+        Raises
+        ------
+        ValueError
+            If there are less than two times.
         """
+        if len(time) < 2:
+            raise ValueError(f"sampling needs at least 2 scans, got {len(time)}")
         return max(2, math.ceil(first * _mean(time) / self._mean(time) * (1 - 1e-12)))
 
     def _mean(self, time: Array) -> float:

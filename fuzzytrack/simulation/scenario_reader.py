@@ -221,8 +221,8 @@ class ScenarioReader:
         time, position = path()
         first = 2
         if sampling != REGULAR:
-            first = sampling.scan(first, time)
             with self._errors_of_sampling():
+                first = sampling.scan(first, time)
                 time = sampling.times(time, streams(0, _DRAWS))
             _, position = path(at=time)
         return time, position, first

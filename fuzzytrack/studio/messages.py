@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -107,11 +108,16 @@ def answer(seq: int, result: Mapping[str, Any]) -> str:
     return _text({"seq": seq, "result": plain(result)})
 
 
+# A word of a request that a refusal quotes, with what stays of it.
+_LONG = re.compile(r"(\S{60})\S{60,}(\S{20})")
+
+
 def error(seq: int | None, failure: BaseException | str) -> str:
     """Answer to a request that cannot be done: a sentence, and the place if it is in a text."""
     where = getattr(failure, "location", None)
     # The file of a text in the editor has no name that helps.
     said = failure.message if isinstance(failure, FileError) else str(failure)
+    said = _LONG.sub(r"\1…\2", said)
     place = {"line": where.line, "column": where.column} if where else None
     return _text({"seq": seq, "error": said, "where": place})
 

@@ -255,6 +255,12 @@ def test_complaints_of_sampling(text, place, expected):
     assert found.startswith(f"s.yaml:5:{place}: {expected}"), found
 
 
+def test_sampling_needs_a_time_between_scans():
+    target = "target: {waypoints: [[0, 0], [1, 1]], leg: 1, period: 5}\n"
+    found = complaint(f"{HEAD}{target}{SENSORS}sampling: {{jitter: 0.1}}\n")
+    assert "sampling needs at least 2 scans, got 1" in found
+
+
 def test_where_sampling_does_not_go(tmp_path):
     text = f"{HEAD}{TARGET}{SENSORS}sampling: {{jitter: 0.1}}\nstart: interpolate\n"
     assert complaint(text) == (

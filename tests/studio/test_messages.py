@@ -55,6 +55,11 @@ def test_an_error_names_the_place_and_no_file():
     }
 
 
+def test_a_long_word_is_shortened():
+    said = json.loads(error(1, f"unknown set {'x' * 3000!r}; allowed: a, b"))["error"]
+    assert said == f"unknown set '{'x' * 59}…{'x' * 18}'; allowed: a, b"
+
+
 def test_layers_are_floats_behind_six_numbers():
     values = np.arange(12.0).reshape(2, 3, 2)
     raw = Layers(values).message(9)
