@@ -154,12 +154,15 @@ def browser_page(server):
     api = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
     if not CHROMIUM.exists():
         pytest.skip(f"needs Debian's Chromium, {CHROMIUM}")
+    # Under the load of other tests a page may need a while.
+    api.expect.set_options(timeout=60_000)
     mistakes = []
     with api.sync_playwright() as player:
         browser = player.chromium.launch(
             executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"]
         )
         page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.set_default_timeout(60_000)
         page.on("pageerror", lambda mistake: mistakes.append(mistake))
         page.goto(f"http://{server.host}/#token={TOKEN}")
         yield page
