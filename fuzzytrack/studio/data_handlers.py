@@ -13,7 +13,7 @@ from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MESSAGE_BYTES
 from fuzzytrack.studio.pages import Page
-from fuzzytrack.studio.recorded import Recorded, summary_of, tracked_as_json
+from fuzzytrack.studio.recorded import Recorded, naming, summary_of, tracked_as_json
 from fuzzytrack.studio.run_handlers import trackers_of
 from fuzzytrack.studio.tracker_texts import EDITOR, check_place
 from fuzzytrack.studio.tune_jobs import Tuning, tune_work
@@ -67,7 +67,8 @@ def track(page: Page, given: Arguments) -> Later:
 
     def work() -> Answer:
         trackers = make()
-        return {"name": name, **tracked_as_json(recording.read(), trackers)}
+        with naming(path):
+            return {"name": name, **tracked_as_json(recording.read(), trackers)}
 
     return Later(work)
 

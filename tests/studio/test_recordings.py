@@ -86,6 +86,15 @@ def test_what_cannot_be_done_with_a_recording_is_refused(page, command, argument
     assert message in page.refused(command, **arguments)
 
 
+def test_a_refusal_does_not_name_the_folder(page, csv):
+    page.ask("upload", name="mine.csv", text=csv, id="id")
+    said = page.refused(
+        "track", name="mine.csv", trackers=TRACKERS[:1], id="id", axes=["x"], truth=["x", "y"]
+    )
+    assert "/" not in said
+    assert "mine.csv" in said or "truth" in said
+
+
 def test_more_plots_than_there_may_be_are_refused(page, monkeypatch):
     monkeypatch.setattr("fuzzytrack.studio.uploads.MOST_PLOTS", 20)
     text = "time,x\n" + "".join(f"{k},{k}\n" for k in range(30))
