@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 from fuzzytrack.errors import FileError, in_one_sentence
 from fuzzytrack.fuzzy.loading import loads_rulebase
@@ -48,17 +47,6 @@ class Complaint:
     path: Path = ()
     cell: dict[str, str] | None = None
     stops: bool = True
-
-    def as_json(self) -> dict[str, Any]:
-        """Complaint as JSON prints it."""
-        return {
-            "message": self.message,
-            "line": self.line,
-            "column": self.column,
-            "path": list(self.path),
-            "cell": self.cell or {},
-            "stops": self.stops,
-        }
 
 
 def complaint_of(error: Exception, text: str | None = None, *, stops: bool = True) -> Complaint:

@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from fuzzytrack.errors import FileError, ScenarioError
-from fuzzytrack.fuzzy.as_json import rulebase_as_json
 from fuzzytrack.fuzzy.loading import (
     load_rulebase,
     loads_rulebase,
@@ -34,7 +33,7 @@ from fuzzytrack.studio.commands import OF_ANY_TEXT, edited, is_number
 from fuzzytrack.studio.complaints import Complaint, complaint_of, complaints_of_rules
 from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.history import History, OpenText, Texts
-from fuzzytrack.studio.surfaces import Surfaces, surface_names, surfaces
+from fuzzytrack.studio.surfaces import Surfaces, surfaces
 from fuzzytrack.yamltree import MAX_BYTES, Document, Node, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode
 
@@ -303,33 +302,6 @@ class Session:
 
     # ---------------------------------------------------------------- what follows
 
-    def state(self) -> dict[str, Any]:
-        """All that a page shows of the texts, as JSON prints it.
-
-        Returns
-        -------
-        dict
-            ``rules`` and ``scenario``, each with ``name``, ``text``, ``saved`` and ``complaints``;
-            ``model``, the rule base as `fuzzytrack.fuzzy.as_json` writes it, with ``table`` (its
-            columns, rows and cells, or None for a list); ``surfaces``, names for `surfaces`; and
-            ``undo`` and ``redo``, how many edits can be.
-        """
-        rules = self._reading.rules
-        undo, redo = self._history.steps
-        layout = rules.layout
-        table = layout and {
-            "columns": layout.columns,
-            "rows": layout.rows,
-            "cells": list(layout.cells),
-        }
-        return {
-            **{kind: self._kind_state(kind) for kind in KINDS},
-            "model": {**rulebase_as_json(rules), "table": table},
-            "surfaces": list(surface_names(self._reading.system)),
-            "undo": undo,
-            "redo": redo,
-        }
-
     def explain(self, at: Mapping[str, float]) -> dict[str, Any]:
         """Rules that fire at a point, outputs there and gains behind them, as JSON prints it.
 
@@ -381,15 +353,6 @@ class Session:
         return surfaces(self._reading.system, names, points, inputs=inputs, at=at, less=other)
 
     # ---------------------------------------------------------------- inside
-
-    def _kind_state(self, kind: str) -> dict[str, Any]:
-        open_text = self._open_text(kind)
-        return {
-            "name": open_text.name,
-            "text": open_text.text,
-            "saved": self.is_saved(kind),
-            "complaints": [each.as_json() for each in self._reading.complaints[kind]],
-        }
 
     def _open_text(self, kind: str) -> OpenText:
         if kind not in KINDS:

@@ -29,7 +29,7 @@ def test_edits_are_drawn_undone_and_made_again():
     for width in (0.2, 0.3):
         shape = {"variable": "E", "set": "ze", "parameters": [-width, 0, width]}
         assert session.do("shape", shape, gesture="drag") == (("dE", "ze"),)
-    assert session.state()["undo"] == 2
+    assert session.steps == (2, 0)
     assert session.undo()
     assert session.undo()
     assert session.texts.rules.text == first
@@ -37,37 +37,31 @@ def test_edits_are_drawn_undone_and_made_again():
     assert not session.undo()
     assert session.redo()
     assert shown(session) == "S"
-    assert (session.state()["undo"], session.state()["redo"]) == (1, 1)
+    assert session.steps == (1, 1)
 
 
 def test_a_refused_edit_changes_nothing():
     session = Session()
-    before = session.state()
+    before = session.texts, session.steps
     with pytest.raises(RuleBaseError, match="unknown set of stiffness 'X'"):
         session.do("cell", {"where": WHERE, "says": "X-L"})
     with pytest.raises(RuleBaseError, match="is used by the rules"):
         session.do("remove-set", {"variable": "damping", "set": "L"})
-    assert session.state() == before
+    assert (session.texts, session.steps) == before
 
 
 def test_a_text_that_does_not_load_keeps_the_last_rule_base():
     session = Session()
     text = session.texts.rules.text
     session.replace("rules", text.replace("nl: [S-L, M-L", "nl: [S-L, M-X"))
-    state = session.state()
-    (complaint,) = state["rules"]["complaints"]
-    assert complaint["cell"] == {"E": "nm", "dE": "nl"}
-    assert state["rules"]["text"] != text
-    assert state["model"]["table"] == {
-        "columns": "E",
-        "rows": "dE",
-        "cells": ["stiffness", "damping"],
-    }
+    (complaint,) = session.reading.complaints["rules"]
+    assert complaint.cell == {"E": "nm", "dE": "nl"}
+    assert session.texts.rules.text != text
     assert session.surfaces(["alpha"], 5).values["alpha"].shape == (5, 5)
     with pytest.raises(FileError, match=r"does not load: unknown set of damping 'X'.*or undo"):
         session.do("cell", {"where": WHERE, "says": "L-L"})
     session.undo()
-    assert session.state()["rules"]["complaints"] == []
+    assert session.reading.complaints["rules"] == ()
     with pytest.raises(ValueError, match="text: is longer than 128 KiB"):
         session.replace("rules", "x" * 200_000)
     with pytest.raises(ValueError, match="kind: must be one of rules, scenario, got 'x'"):
@@ -79,11 +73,11 @@ def test_scenarios():
     assert session.reading.scenario.position.shape[-1] == 2
     name = session.reading.scenario.name
     session.replace("scenario", session.texts.scenario.text.replace("sigma: 115", "sigma: -1"))
-    (complaint,) = session.state()["scenario"]["complaints"]
-    assert complaint["path"][:2] == ["sensors", "sigma"]
+    (complaint,) = session.reading.complaints["scenario"]
+    assert list(complaint.path[:2]) == ["sensors", "sigma"]
     assert session.reading.scenario.name == name
     session.undo()
-    assert session.state()["scenario"]["complaints"] == []
+    assert session.reading.complaints["scenario"] == ()
 
 
 def test_values_of_either_text():
@@ -125,9 +119,9 @@ def test_scenarios_name_files_of_the_folder_only(folder, old, new):
     session = Session(folder)
     assert session.texts.scenario.text.count(old) == 1
     session.replace("scenario", session.texts.scenario.text.replace(old, new))
-    (complaint,) = session.state()["scenario"]["complaints"]
-    assert "must be the name of a file" in complaint["message"]
-    assert complaint["line"]
+    (complaint,) = session.reading.complaints["scenario"]
+    assert "must be the name of a file" in complaint.message
+    assert complaint.line
 
 
 def test_files(folder):
@@ -138,7 +132,7 @@ def test_files(folder):
     with pytest.raises(FolderError, match="must be the name of a file that ends in"):
         session.save("rules")
     session.save("rules", "mine.yaml")
-    assert session.state()["rules"]["name"] == "mine.yaml"
+    assert session.texts.rules.name == "mine.yaml"
     assert session.is_saved("rules")
     other.open("rules", "mine.yaml")
     other.do("cell", {"where": WHERE, "says": "M-M"})
@@ -219,9 +213,3 @@ def test_drafts(folder):
 def test_points_are_checked(at):
     with pytest.raises(ValueError, match="at: must give a number for E, dE; got"):
         Session().explain(at)
-
-
-def test_the_state_is_json():
-    for name in ("stiffness-damping", "omega-schedule", "maneuver"):
-        state = Session(rules=name).state()
-        assert json.loads(json.dumps(state, allow_nan=False)) == state
