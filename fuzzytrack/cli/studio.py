@@ -42,7 +42,7 @@ def studio(
     ] = None,
     plugin: options.Plugins = None,
 ) -> None:
-    """Edit rule bases, look at their surfaces and run experiments, on a page in the browser.
+    """Edit rule bases, draw surfaces and run experiments on a page in the browser.
 
     Stop it with Ctrl-C. Only this computer can open the page unless --host is given.
     """

@@ -10,10 +10,11 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.specs import is_file, split
 from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MESSAGE_BYTES
 from fuzzytrack.studio.pages import Page
-from fuzzytrack.studio.recorded import Recorded, naming, summary_of, tracked_as_json
+from fuzzytrack.studio.recorded import Recorded, summary_of, tracked_as_json
 from fuzzytrack.studio.run_handlers import trackers_of
 from fuzzytrack.studio.tracker_texts import EDITOR, check_place
 from fuzzytrack.studio.tune_jobs import Tuning, tune_work

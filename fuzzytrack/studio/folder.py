@@ -7,7 +7,8 @@ import os
 import re
 import stat
 import threading
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from fuzzytrack.io.files import whole_file
 from fuzzytrack.plurals import counted
 from fuzzytrack.yamltree import MAX_BYTES, quoted
 
-__all__ = ["MAX_DRAFTS", "FileEntry", "FileText", "Folder", "FolderError"]
+__all__ = ["MAX_DRAFTS", "FileEntry", "FileText", "Folder", "FolderError", "naming"]
 
 #: Drafts in a folder; one for each session.
 MAX_DRAFTS = 8
@@ -241,3 +242,12 @@ def _file_text(name: str, raw: bytes) -> FileText:
 
 def _version(raw: bytes) -> str:
     return hashlib.sha256(raw).hexdigest()[:32]
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Name a file in messages without its folder, which means nothing to the page."""
+    try:
+        yield
+    except ValueError as failure:
+        raise ValueError(str(failure).replace(str(path), path.name)) from None

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,12 +14,13 @@ from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.ragged import run_tracks, sigmas_of
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
+from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.uploads import check_plots
 from fuzzytrack.testbed.recorded_comparison import compare_used
 from fuzzytrack.testbed.recorded_scores import RecordedComparison, RecordedScore
 from fuzzytrack.trackers.base import Tracker
 
-__all__ = ["Recorded", "naming", "summary_of", "tracked_as_json"]
+__all__ = ["Recorded", "summary_of", "tracked_as_json"]
 
 # Tracks and plots that are drawn.
 _TRACKS, _PLOTS = 8, 2_000
@@ -85,15 +85,6 @@ class Recorded:
         with naming(self.path):
             reading = Reading.of(**self.options)
             return read_used_plots(self.path, reading, truth=self.true_columns)
-
-
-@contextmanager
-def naming(path: Path) -> Iterator[None]:
-    """Name a file in messages without its folder, which means nothing to the page."""
-    try:
-        yield
-    except ValueError as failure:
-        raise ValueError(str(failure).replace(str(path), path.name)) from None
 
 
 def summary_of(used: UsedPlots) -> dict[str, Any]:

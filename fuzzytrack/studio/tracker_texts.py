@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from fuzzytrack import specs
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.studio.folder import naming
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers, catalog, tracker_of_rules
 
@@ -46,6 +48,7 @@ def make_trackers(
     if len(texts) > MOST_TRACKERS:
         raise ValueError(f"trackers: {len(texts)}; at most {MOST_TRACKERS}")
     named: dict[str, Tracker | str] = {}
+    files: list[Path] = []
     for text in texts:
         if text in named:
             raise ValueError(f"trackers: {text!r} is given twice")
@@ -54,10 +57,16 @@ def make_trackers(
         if name in (EDITOR, SAVED):
             named[text] = _of_rules(text, edited(name), options)
         elif specs.is_file(name):
-            named[text] = str(path(name)) + text.strip()[len(name) :]
+            files.append(path(name))
+            if not files[-1].is_file():
+                raise ValueError(f"trackers: {name} is not in the folder")
+            named[text] = str(files[-1]) + text.strip()[len(name) :]
         else:
             named[text] = text
-    return as_trackers(named)
+    with ExitStack() as stack:
+        for file in files:
+            stack.enter_context(naming(file))
+        return as_trackers(named)
 
 
 def check_place(text: str, argument: str) -> None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.jobs import Job, Work
-from fuzzytrack.studio.recorded import Recorded, naming
+from fuzzytrack.studio.recorded import Recorded
 from fuzzytrack.studio.uploads import check_plots
 
 if TYPE_CHECKING:

@@ -88,7 +88,7 @@ def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page):
         ({"runs": 5, "trackers": []}, "trackers: needs a list of texts"),
         ({"runs": 5, "trackers": ["no-such"]}, "no such tracker"),
         ({"runs": 5, "trackers": ["../x.yaml"]}, "outside of the folder"),
-        ({"runs": 5, "trackers": ["missing.yaml"]}, "missing.yaml"),
+        ({"runs": 5, "trackers": ["missing.yaml"]}, "missing.yaml is not in the folder"),
         ({"runs": 5, "trackers": ["editor", "editor"]}, "is given twice"),
         ({"runs": 5, "trackers": ["editor:no=1"]}, "tracker 'editor:no=1': "),
         ({"runs": 5, "trackers": [f"fixed:alpha=0.5:beta=0.{k}" for k in range(1, 42)]}, "at most"),
