@@ -1,7 +1,8 @@
-/* The pane that starts a Monte Carlo experiment: its trackers, runs and seed, progress and cancel. */
+/* The pane that starts a Monte Carlo experiment: its trackers, runs and seed. */
 
 import { html } from "./elements.js";
 import { action, group, numberField } from "./fields.js";
+import { jobBar } from "./jobbar.js";
 import { chosenTrackers, trackerList } from "./pick.js";
 
 export const title = "Run";
@@ -19,9 +20,7 @@ export function mount(element, app) {
     title: "The same seed gives the same plots, here and at the command line",
   });
   const start = action("Run", run, { class: "primary", title: "Run (Ctrl Enter)" });
-  const cancel = html("button", { type: "button", onclick: stop }, "Cancel");
-  const bar = html("progress", { max: 1, "aria-label": "Progress of the runs" });
-  const words = html("p", { class: "muted", role: "status" });
+  const { element: progress, cancel, words } = jobBar(app, "run", "Progress of the runs", start);
   const what = html("p", { class: "muted" });
 
   element.append(
@@ -29,7 +28,7 @@ export function mount(element, app) {
     html(
       "div",
       { class: "side" },
-      html("div", { class: "progress" }, bar, words),
+      progress,
       group("Scenario", what),
       group("Experiment", html("div", { class: "form-grid" }, runs.element, seed.element)),
       group("Trackers", picks.element),
@@ -60,30 +59,9 @@ export function mount(element, app) {
     }
   }
 
-  async function stop() {
-    const { job } = store.now;
-    try {
-      const answer = await socket.send("cancel", { job: job.id });
-      store.set({ job: answer.job });
-    } catch (error) {
-      say(error.message, "error");
-    }
-  }
-
   store.follow(["wantedRuns", "seed"], ({ wantedRuns, seed: wanted }) => {
     runs.show(wantedRuns);
     seed.show(wanted);
-  });
-  store.follow(["job"], ({ job }) => {
-    const own = job?.kind === "run";
-    const running = own && job.state === "running";
-    start.hidden = running;
-    cancel.hidden = !running;
-    bar.hidden = !running;
-    if (running && job.done) bar.value = job.done / job.of;
-    else bar.removeAttribute("value");
-    words.textContent = own ? told(job) : "";
-    words.classList.toggle("failed", own && job.state === "failed");
   });
   store.follow(["scenario"], ({ scenario }) => {
     if (!scenario) return;
@@ -97,19 +75,4 @@ export function mount(element, app) {
       trackers: ["editor", ...(scenario.scenario.trackers ?? [])].map((text) => ({ text, on: true })),
     });
   });
-}
-
-/** A job in words. */
-export function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
-  const count = kind === "run" ? `${done} of ${of} runs` : `${Math.round((100 * done) / of)} %`;
-  if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
-  if (state === "cancelled") return `Canceled after ${count}.`;
-  if (state === "failed") return `Failed: ${error}`;
-  return `${kind === "run" ? `${of} runs` : "Done"} in ${duration(seconds)}.`;
-}
-
-function duration(seconds) {
-  if (seconds < 9.95) return `${seconds.toFixed(1)} s`;
-  if (seconds < 90) return `${Math.round(seconds)} s`;
-  return `${Math.round(seconds / 60)} min`;
 }

@@ -29,7 +29,7 @@ export function connect(token, heard) {
       }
       pending.clear();
       heard("close");
-      // Another tab has this session now; to take it back would start a quarrel.
+      // Another tab has this session now, and would take it back in turn.
       if (code === MOVED) return;
       setTimeout(open, pause);
       pause = Math.min(2 * pause, LONGEST_PAUSE);

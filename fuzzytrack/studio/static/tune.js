@@ -2,12 +2,12 @@
 
 import { choice, html } from "./elements.js";
 import { action, group, numberField, textField } from "./fields.js";
+import { jobBar } from "./jobbar.js";
 import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import { even, shown, withPlaces } from "./numbers.js";
 import { download } from "./pictures.js";
 import { columnsOf } from "./recording.js";
-import { told } from "./run.js";
 
 export const title = "Tune";
 
@@ -26,9 +26,7 @@ export function mount(element, app) {
     title: "Runs of the scenario",
   });
   const start = action("Tune", run, { class: "primary" });
-  const cancel = html("button", { type: "button", onclick: stop }, "Cancel");
-  const bar = html("progress", { max: 1, "aria-label": "Progress of tuning" });
-  const words = html("p", { class: "muted", role: "status" });
+  const { element: progress, cancel } = jobBar(app, "tune", "Progress of tuning", start);
   const found = html("div", { class: "tuned" });
 
   element.append(
@@ -44,7 +42,7 @@ export function mount(element, app) {
     html(
       "div",
       { class: "side" },
-      html("div", { class: "progress" }, bar, words),
+      progress,
       found,
       group(
         "What",
@@ -90,14 +88,6 @@ export function mount(element, app) {
     return [...numbers, ...text, ...scriptEntries(app, "tune", asked())];
   }
 
-  async function stop() {
-    try {
-      store.set({ job: (await socket.send("cancel", { job: store.now.job.id })).job });
-    } catch (error) {
-      say(error.message, "error");
-    }
-  }
-
   function choose(text) {
     const others = store.now.trackers.filter((each) => each.text !== text);
     store.set({ trackers: [...others, { text, on: true }], view: "run" });
@@ -126,16 +116,7 @@ export function mount(element, app) {
     runs.show(tuning.runs);
   });
   store.follow(["job"], ({ job }) => {
-    const own = job?.kind === "tune";
-    const running = own && job.state === "running";
-    start.hidden = running;
-    cancel.hidden = !running;
-    bar.hidden = !running;
-    if (running && job.done) bar.value = job.done / job.of;
-    else bar.removeAttribute("value");
-    words.textContent = own ? told(job) : "";
-    words.classList.toggle("failed", own && job.state === "failed");
-    if (own && job.results) store.set({ tuned: job.results });
+    if (job?.kind === "tune" && job.results) store.set({ tuned: job.results });
   });
   store.follow(["tuned"], ({ tuned }) => {
     found.hidden = !tuned;

@@ -1,0 +1,49 @@
+/* Progress of the jobs of a pane: how far one is, what is left, how it ended, and its cancel. */
+
+import { html } from "./elements.js";
+
+/**
+ * Bar and words for jobs of a kind, and the button that cancels one, which is there in place of
+ * `start` while one runs.
+ */
+export function jobBar({ store, socket, say }, kind, label, start) {
+  const cancel = html("button", { type: "button", onclick: stop }, "Cancel");
+  const bar = html("progress", { max: 1, "aria-label": label });
+  const words = html("p", { class: "muted", role: "status" });
+
+  async function stop() {
+    try {
+      store.set({ job: (await socket.send("cancel", { job: store.now.job.id })).job });
+    } catch (error) {
+      say(error.message, "error");
+    }
+  }
+
+  store.follow(["job"], ({ job }) => {
+    const own = job?.kind === kind;
+    const running = own && job.state === "running";
+    start.hidden = running;
+    cancel.hidden = !running;
+    bar.hidden = !running;
+    if (running && job.done) bar.value = job.done / job.of;
+    else bar.removeAttribute("value");
+    words.textContent = own ? told(job) : "";
+    words.classList.toggle("failed", own && job.state === "failed");
+  });
+  return { element: html("div", { class: "progress" }, bar, words), cancel, words };
+}
+
+/** A job in words. */
+function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
+  const count = kind === "run" ? `${done} of ${of} runs` : `${Math.round((100 * done) / of)} %`;
+  if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
+  if (state === "cancelled") return `Canceled after ${count}.`;
+  if (state === "failed") return `Failed: ${error}`;
+  return `${kind === "run" ? `${of} runs` : "Done"} in ${duration(seconds)}.`;
+}
+
+function duration(seconds) {
+  if (seconds < 9.95) return `${seconds.toFixed(1)} s`;
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  return `${Math.round(seconds / 60)} min`;
+}
