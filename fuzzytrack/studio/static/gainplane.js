@@ -11,7 +11,7 @@ const MARGIN = { left: 58, right: 16, top: 12, bottom: 40 };
 
 export function mount(element, app) {
   const { socket, store, say } = app;
-  const picture = svg("svg", { class: "plane", role: "img" });
+  const picture = svg("svg", { class: "plane", role: "img", "aria-label": "nothing yet" });
   const range = choice("Range of the axes", (planeRange) => store.set({ planeRange }));
   const verdict = html("p", { class: "verdict", "aria-live": "polite" });
   const certify = html("button", { type: "button", onclick: prove }, "Certify");
