@@ -17,9 +17,14 @@ CSV = "time,x,y,tx,ty\n" + "".join(
 
 def findings(page):
     """What axe-core finds on the page as it is: rule, and first elements."""
-    found = page.evaluate(
-        "levels => axe.run(document, {runOnly: levels, resultTypes: ['violations']})", LEVELS
-    )
+    for _ in range(20):
+        found = page.evaluate(
+            "levels => axe.run(document, {runOnly: levels, resultTypes: ['violations']})", LEVELS
+        )
+        if not found["violations"]:
+            break
+        # Under load it may still be drawn.
+        page.wait_for_timeout(500)
     return [
         (each["id"], [n["html"][:200] for n in each["nodes"][:3]]) for each in found["violations"]
     ]
