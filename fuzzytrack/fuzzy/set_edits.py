@@ -17,6 +17,14 @@ from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.numbers import written
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.saving import shape_text, word_text
+from fuzzytrack.fuzzy.table_edits import (
+    add_line,
+    axes_of_table,
+    edit_heading,
+    entry_text,
+    remove_line,
+    table_rows,
+)
 from fuzzytrack.fuzzy.text_edits import EditedText, TextEdits
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.yamltree import Mapping, Node, Scalar, quoted
@@ -185,11 +193,11 @@ def add_set(
     shared = _sharing(edits, variable)
     sets = edits.sets(variable)
     beside = list(sets.entries.values())[max(index - 1, 0)]
-    entry = _entry(edits, new.name, beside, shape_text(new))
+    entry = entry_text(edits, new.name, beside, shape_text(new))
     edits.insert(sets, index, entry)
     rules = edits.before.rules
-    for name in _of_table(edits.before, shared):
-        _add_line(edits, name, new.name, index, model)
+    for name in axes_of_table(edits.before, shared):
+        add_line(edits, name, new.name, index, model)
         rules += tuple(
             _conditioned(rule, name, new.name) for rule in rules if _has(rule, name, model)
         )
@@ -246,7 +254,7 @@ def remove_set(
     owner = _variable(edits.before, variable)
     index = owner.index(set_name)
     shared = _sharing(edits, variable)
-    lines = _of_table(edits.before, shared) if with_rules else []
+    lines = axes_of_table(edits.before, shared) if with_rules else []
     users = [
         rule
         for rule in edits.before.rules
@@ -257,7 +265,7 @@ def remove_set(
         raise edits.document.error(sets.entries[set_name][0], _in_use(variable, set_name, users))
     edits.remove(sets, index)
     for name in lines:
-        _remove_line(edits, name, set_name, index, set(lines))
+        remove_line(edits, name, set_name, index, set(lines))
     rules = tuple(r for r in edits.before.rules if not any(_has(r, n, set_name) for n in lines))
 
     def shorter(found: tuple[FuzzySet, ...]) -> tuple[FuzzySet, ...]:
@@ -316,7 +324,7 @@ def rename_set(
     _rename_in_conditions(edits, shared, old, new)
     _rename_in_consequents(edits, shared, old, new)
     for name in shared:
-        _edit_heading(edits, name, lambda spans: {spans[index]: new})
+        edit_heading(edits, name, lambda spans: {spans[index]: new})
 
     def renamed(found: tuple[FuzzySet, ...]) -> tuple[FuzzySet, ...]:
         return tuple(replace(s, name=new) if s.name == old else s for s in found)
@@ -398,115 +406,6 @@ def _alike(a: FuzzySet, b: FuzzySet) -> bool:
     return (a.shape, a.parameters) == (b.shape, b.parameters)
 
 
-# -------------------------------------------------------------------- columns and rows
-
-
-def _of_table(rules: RuleBase, names: Sequence[str]) -> list[str]:
-    """Those inputs that a table has, the one of its columns first."""
-    layout = rules.layout
-    return [n for n in (layout.columns, layout.rows) if n in names] if layout else []
-
-
-def _rows(edits: TextEdits) -> dict[str, tuple[Scalar, ListNode]]:
-    """Rows of the table, by the names of their sets."""
-    found = {}
-    for name, (key, row) in edits.document.entries(edits.field("rules", "table"), "table").items():
-        assert isinstance(row, ListNode)
-        found[name] = key, row
-    return found
-
-
-def _add_line(edits: TextEdits, name: str, new: str, index: int, model: str) -> None:
-    """Add a column or row of the table, as a copy of that of another set."""
-    layout = edits.before.layout
-    assert layout is not None
-    place = edits.before.input(name).index(model)
-    if name == layout.columns:
-        rows = _rows(edits).values()
-        for items in {id(row.items): row for _, row in rows}.values():
-            cell = items.items[place]
-            copy = edits.current(edits.content(cell), cell.end, anchors=False)
-            edits.insert(items, index, copy)
-        width = max(_width(row.items[place]) for _, row in rows)
-
-        def inserted(spans: list[tuple[int, int]]) -> dict[tuple[int, int], str]:
-            if index == 0:
-                start = spans[0][0]
-                return {(start, start): new.ljust(width + 2)}
-            start, end = spans[index - 1]
-            return {(end, end): " " * max(0, width - (end - start)) + f"  {new}"}
-
-        _edit_heading(edits, name, inserted)
-        return
-    key, row = _rows(edits)[model]
-    table = edits.field("rules", "table")
-    assert isinstance(table, Mapping)
-    copy = edits.current(edits.content(row), row.end, anchors=False)
-    where = list(table.entries).index(model) + (place < index)
-    edits.insert(table, where, _entry(edits, new, (key, row), copy))
-
-
-def _width(cell: Node) -> int:
-    return cell.end - cell.start
-
-
-def _remove_line(edits: TextEdits, name: str, old: str, index: int, lines: set[str]) -> None:
-    """Remove a column or row of the table."""
-    layout = edits.before.layout
-    assert layout is not None
-    if name == layout.columns:
-        # A row that is removed as well needs no change.
-        rows = [r for n, (_, r) in _rows(edits).items() if not (n == old and layout.rows in lines)]
-        for items in {id(row.items): row for row in rows}.values():
-            edits.remove(items, index)
-
-        def shorter(spans: list[tuple[int, int]]) -> dict[tuple[int, int], str]:
-            if index == 0:
-                return {(spans[0][0], spans[1][0]): ""}
-            return {(spans[index - 1][1], spans[index][1]): ""}
-
-        _edit_heading(edits, name, shorter)
-        return
-    table = edits.field("rules", "table")
-    assert isinstance(table, Mapping)
-    edits.remove(table, list(table.entries).index(old))
-
-
-def _edit_heading(
-    edits: TextEdits,
-    name: str,
-    change: Callable[[list[tuple[int, int]]], dict[tuple[int, int], str]],
-) -> None:
-    """Change the comment above the rows of a table that lists the sets of its columns, if any.
-
-    `change` gets the first and last characters of the names.
-    """
-    layout = edits.before.layout
-    if layout is None or layout.columns != name:
-        return
-    key = edits.document.entries(edits.field("rules"), "rules")["table"][0]
-    first = next(iter(_rows(edits).values()))[0]
-    words = [re.escape(word) for word in edits.before.input(name).set_names]
-    line = re.compile(r"#[ \t]*" + r"[ \t]+".join(f"({w})" for w in words) + r"[ \t]*(?=[\r\n])")
-    found = line.search(edits.text, key.end, max(key.end, first.start))
-    if found:
-        spans = [found.span(k + 1) for k in range(len(words))]
-        for (start, end), new in change(spans).items():
-            edits.replace(start, end, new)
-
-
-def _entry(edits: TextEdits, name: str, beside: tuple[Scalar, Node], value: str) -> str:
-    """Entry of a mapping, its value in the column of that of another entry."""
-    key, other = beside
-    word = f"{word_text(name)}:"
-    if value.startswith(("\r", "\n")):
-        return word + value
-    if other.line != key.line and not other.alias and "\n" in value:
-        return word + edits.text[key.end : other.start].lstrip(" :") + value
-    width = other.column - key.column if other.line == key.line else 0
-    return word.ljust(max(width, len(word) + 1)) + value
-
-
 # -------------------------------------------------------------------- names
 
 
@@ -531,7 +430,7 @@ def _rename_in_conditions(edits: TextEdits, shared: Sequence[str], old: str, new
     layout, rules = edits.before.layout, edits.field("rules")
     if layout is not None:
         if layout.rows in shared:
-            _rename_word(edits, _rows(edits)[old][0], old, new)
+            _rename_word(edits, table_rows(edits)[old][0], old, new)
         return
     assert isinstance(rules, ListNode)
     for rule in rules.items:
