@@ -141,7 +141,7 @@ def _block_parent(edits: TextEdits, alias: Node) -> int | None:
 
 def _in_braces(edits: TextEdits, alias: Node) -> str:
     """The sets that an alias refers to, on one line."""
-    for variable in (*edits.before.inputs, *edits.before.outputs):
+    for variable in edits.before.variables:
         if edits.sets(variable.name).start == alias.start:
             pairs = (f"{word_text(s.name)}: {shape_text(s)}" for s in variable.sets)
             return f"{{{', '.join(pairs)}}}"

@@ -232,7 +232,7 @@ class RuleBase:
             raise RuleBaseError(f"a rule base needs 1 to {MAX_INPUTS} inputs and 1 output or more")
         if len(self.outputs) > MAX_OUTPUTS:
             raise RuleBaseError(f"a rule base takes up to {MAX_OUTPUTS} outputs")
-        names = [v.name for v in (*self.inputs, *self.outputs)]
+        names = [v.name for v in self.variables]
         doubled = {n for n in names if names.count(n) > 1}
         if doubled:
             raise RuleBaseError(f"two variables of one name: {min(doubled)!r}")
@@ -290,6 +290,11 @@ class RuleBase:
         return tuple(ordered)
 
     @property
+    def variables(self) -> tuple[Variable, ...]:
+        """The inputs and then the outputs, in order."""
+        return (*self.inputs, *self.outputs)
+
+    @property
     def input_names(self) -> tuple[str, ...]:
         """Names of the inputs, in order."""
         return tuple(v.name for v in self.inputs)
@@ -306,6 +311,10 @@ class RuleBase:
     def output(self, name: str) -> Variable:
         """Output by name; RuleBaseError names the allowed ones."""
         return _named(self.outputs, name, "output")
+
+    def variable(self, name: str) -> Variable:
+        """Input or output by name; RuleBaseError names the allowed ones."""
+        return _named(self.variables, name, "variable")
 
     def place(self, name: str) -> Location | None:
         """Where the universe of a variable stands in the file that the rule base was read from.

@@ -1,4 +1,4 @@
-"""Fuzzy sets changed in the text of a rule base; all else in the text stays as it is.
+"""Fuzzy sets added, removed and renamed in the text of a rule base; the rest stays as it is.
 
 Sets that variables share by an anchor (``sets: &seven``, ``sets: *seven``) are changed for all of
 them, and the result says so in `also`; or, with ``apart=True``, they are written out first.
@@ -14,7 +14,6 @@ from dataclasses import replace
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.anchors import write_out
 from fuzzytrack.fuzzy.membership import FuzzySet
-from fuzzytrack.fuzzy.numbers import written
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.saving import shape_text, word_text
 from fuzzytrack.fuzzy.table_edits import (
@@ -30,114 +29,10 @@ from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.yamltree import Mapping, Node, Scalar, quoted
 from fuzzytrack.yamltree import Sequence as ListNode
 
-__all__ = ["add_set", "remove_set", "rename_set", "set_shape", "set_shapes"]
+__all__ = ["add_set", "remove_set", "rename_set"]
 
 # Rules that a message names; of more, it says how many.
 _NAMED = 6
-
-
-def set_shape(
-    text: str,
-    variable: str,
-    set_name: str,
-    parameters: Sequence[float],
-    shape: str | None = None,
-    *,
-    apart: bool = False,
-    file: str = "<text>",
-) -> EditedText:
-    """Change the parameters of a fuzzy set, and its shape.
-
-    Parameters
-    ----------
-    text : str
-        A rule base in YAML.
-    variable, set_name : str
-        Name of an input or output, and of one of its sets.
-    parameters : sequence of float
-        In the units of the variable, in the order of `fuzzytrack.fuzzy.membership.SHAPES`. Numbers
-        that stay are left as they are written.
-    shape : str, optional
-        A key of `fuzzytrack.fuzzy.membership.SHAPES`; the shape that it has unless given.
-    apart : bool
-        Whether a set that is shared by an anchor is written out first, so that only this one is
-        changed.
-    file : str
-        Name for messages.
-
-    Returns
-    -------
-    EditedText
-        The text; `also` names other sets that share this one, and were changed with it.
-
-    Raises
-    ------
-    RuleBaseError
-        If the text, before or after, is no rule base, there is no such set, the parameters do not
-        fit the shape, or an anchor shares a single number.
-
-    Examples
-    --------
-    >>> from fuzzytrack.fuzzy.loading import rulebase_path
-    >>> from fuzzytrack.fuzzy.set_edits import set_shape
-    >>> text = rulebase_path("stiffness-damping").read_text(encoding="utf-8")
-    >>> edited = set_shape(text, "E", "ze", [-0.15, 0, 0.15])
-    >>> edited.also
-    (('dE', 'ze'),)
-    """
-    if apart:
-        text = write_out(text, variable, set_name, file)
-    edits = TextEdits(text, file)
-    owner = _variable(edits.before, variable)
-    kind = shape or owner.sets[owner.index(set_name)].shape
-    return _with_shapes(edits, owner, [FuzzySet(set_name, kind, tuple(parameters))])
-
-
-def set_shapes(
-    text: str,
-    variable: str,
-    sets: Iterable[FuzzySet],
-    *,
-    apart: bool = False,
-    file: str = "<text>",
-) -> EditedText:
-    """Change the shapes of several sets of a variable at once, as of neighbors that share a corner.
-
-    Parameters
-    ----------
-    text : str
-        A rule base in YAML.
-    variable : str
-        Name of an input or output.
-    sets : iterable of FuzzySet
-        New shapes, with the names of sets that are there, each once. Only all of them together
-        need to be a rule base.
-    apart : bool
-        Whether sets that are shared by an anchor are written out first.
-    file : str
-        Name for messages.
-
-    Returns
-    -------
-    EditedText
-        As for `set_shape`.
-
-    Raises
-    ------
-    RuleBaseError
-        As for `set_shape`; also if a set is named twice, or two of them share their text.
-    """
-    new = tuple(sets)
-    if apart:
-        for each in new:
-            text = write_out(text, variable, each.name, file)
-    edits = TextEdits(text, file)
-    owner = _variable(edits.before, variable)
-    names = [each.name for each in new]
-    if len(set(names)) < len(names):
-        doubled = next(name for name in names if names.count(name) > 1)
-        raise RuleBaseError(f"sets: {quoted(doubled)} is named twice; give each set once")
-    return _with_shapes(edits, owner, new)
 
 
 def add_set(
@@ -183,7 +78,7 @@ def add_set(
     if apart:
         text = write_out(text, variable, None, file)
     edits = TextEdits(text, file)
-    owner = _variable(edits.before, variable)
+    owner = edits.before.variable(variable)
     if new.name in owner.set_names:
         raise RuleBaseError(f"{variable} has a set {quoted(new.name)} already; choose another name")
     low, high = owner.universe.low, owner.universe.high
@@ -251,7 +146,7 @@ def remove_set(
     if apart:
         text = write_out(text, variable, None, file)
     edits = TextEdits(text, file)
-    owner = _variable(edits.before, variable)
+    owner = edits.before.variable(variable)
     index = owner.index(set_name)
     shared = _sharing(edits, variable)
     lines = axes_of_table(edits.before, shared) if with_rules else []
@@ -314,7 +209,7 @@ def rename_set(
     if apart:
         text = write_out(text, variable, None, file)
     edits = TextEdits(text, file)
-    owner = _variable(edits.before, variable)
+    owner = edits.before.variable(variable)
     index = owner.index(old)
     if new != old and new in owner.set_names:
         raise RuleBaseError(f"{variable} has a set {quoted(new)} already; choose another name")
@@ -332,78 +227,6 @@ def rename_set(
     rules = tuple(_renamed_rule(rule, shared, old, new) for rule in edits.before.rules)
     expected = _with_sets(edits.before, shared, renamed, rules)
     return edits.result(expected, sets, f"the name {quoted(new)}", _others(shared, variable, new))
-
-
-# -------------------------------------------------------------------- shapes
-
-
-def _set_numbers(edits: TextEdits, node: ListNode, parameters: tuple[float, ...]) -> None:
-    """Put numbers in the place of others, of which there may be more or fewer."""
-    numbers = [written(p) for p in parameters]
-    if node.alias:
-        edits.replace(node.start, node.end, f"[{', '.join(numbers)}]")
-        return
-    for item, number in zip(node.items, numbers, strict=False):
-        assert isinstance(item, Scalar)
-        if item.anchored:
-            raise edits.document.error(
-                item, "a number that an anchor shares cannot be set by itself; write it out first"
-            )
-        if float(item.text) != float(number):
-            edits.replace(item.start, item.end, number)
-    kept, last = node.items[: len(numbers)][-1].end, node.items[-1].end
-    between = ", "
-    if not node.flow:
-        between = f"{edits.line_end}{edits.margin_at(edits.start_of(node))}- "
-        kept, last = edits.end_of_line(kept), edits.end_of_line(last)
-    if kept < last:
-        edits.replace(kept, last, "")
-    elif len(numbers) > len(node.items):
-        more = "".join(between + number for number in numbers[len(node.items) :])
-        edits.replace(kept, kept, more)
-
-
-def _with_shapes(edits: TextEdits, owner: Variable, new: Sequence[FuzzySet]) -> EditedText:
-    """The text with new shapes, after a check that only these and their equals have changed."""
-    moved = []
-    nodes = edits.sets(owner.name).entries
-    for each in new:
-        old = owner.sets[owner.index(each.name)]
-        node = nodes[each.name][1]
-        assert isinstance(node, Mapping)  # the text has been read as a rule base
-        ((key, numbers),) = node.entries.values()
-        assert isinstance(numbers, ListNode)
-        if each.shape != old.shape:
-            edits.replace(edits.content(key), key.end, each.shape)
-        _set_numbers(edits, numbers, each.parameters)
-        moved.append((old, each))
-    text, after = edits.loaded()
-    wanted = {(owner.name, each.name): each for each in new}
-    shapes = dict(wanted)
-    for was, now in zip(_variables(edits.before), _variables(after), strict=True):
-        for a, b in zip(was.sets, now.sets, strict=True):
-            # Sets that share the text of one of them were equal to it, and are so again.
-            shared = any(_alike(a, old) and _alike(b, each) for old, each in moved)
-            if a != b and shared:
-                shapes.setdefault((was.name, a.name), b)
-
-    def changed(variables: tuple[Variable, ...]) -> tuple[Variable, ...]:
-        return tuple(
-            replace(v, sets=tuple(shapes.get((v.name, s.name), s) for s in v.sets))
-            for v in variables
-        )
-
-    before = edits.before
-    expected = replace(before, inputs=changed(before.inputs), outputs=changed(before.outputs))
-    if after != expected:
-        named = ", ".join(quoted(each.name) for each in new)
-        edits.result(expected, nodes[new[0].name][1], f"the shape of {named}")
-    order = [(v.name, s.name) for v in _variables(after) for s in v.sets]
-    return EditedText(text, after, [p for p in order if p in shapes and p not in wanted])
-
-
-def _alike(a: FuzzySet, b: FuzzySet) -> bool:
-    return (a.shape, a.parameters) == (b.shape, b.parameters)
 
 
 # -------------------------------------------------------------------- names
@@ -478,22 +301,10 @@ def _words(
 # -------------------------------------------------------------------- rule bases
 
 
-def _variables(rules: RuleBase) -> tuple[Variable, ...]:
-    return (*rules.inputs, *rules.outputs)
-
-
-def _variable(rules: RuleBase, name: str) -> Variable:
-    for variable in _variables(rules):
-        if variable.name == name:
-            return variable
-    allowed = ", ".join((*rules.input_names, *rules.output_names))
-    raise RuleBaseError(f"unknown variable {quoted(name)}; one of {allowed}")
-
-
 def _sharing(edits: TextEdits, variable: str) -> list[str]:
     """Variables that have the same sets in the text, this one included."""
     entries = edits.sets(variable).entries
-    names = (v.name for v in _variables(edits.before))
+    names = (v.name for v in edits.before.variables)
     return [name for name in names if edits.sets(name).entries is entries]
 
 

@@ -1,6 +1,6 @@
 """Changes of the text of a rule base that leave the rest of it as it is, byte for byte.
 
-`fuzzytrack.fuzzy.rule_edits` and `fuzzytrack.fuzzy.set_edits` use it.
+`fuzzytrack.fuzzy.rule_edits`, `set_edits` and `shape_edits` use it.
 """
 
 from __future__ import annotations

@@ -23,7 +23,8 @@ from fuzzytrack.fuzzy.rule_edits import (
     set_operator,
 )
 from fuzzytrack.fuzzy.rulebase import Consequent, RuleBase
-from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set, set_shapes
+from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set
+from fuzzytrack.fuzzy.shape_edits import set_shapes
 from fuzzytrack.fuzzy.text_edits import EditedText
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.studio.symmetry import (

@@ -18,7 +18,8 @@ from fuzzytrack.fuzzy.loading import loads_rulebase, rulebase_path, shipped_rule
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.rule_edits import OPERATORS, set_cell, set_operator
 from fuzzytrack.fuzzy.saving import cell_text, consequents_text
-from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set, set_shape
+from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set
+from fuzzytrack.fuzzy.shape_edits import set_shape
 
 SHIPPED = {name: rulebase_path(name).read_bytes().decode() for name in shipped_rulebases()}
 FLOW = TABLE.replace("sets:\n      lo:", "sets: {lo:").replace(
