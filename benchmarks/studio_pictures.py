@@ -143,8 +143,7 @@ def data(page: Any) -> None:
     files = {"name": "radar.csv", "mimeType": "text/csv", "buffer": recording().encode()}
     page.locator("#pane-data input[type=file]").set_input_files(files)
     page.get_by_role("alert").filter(has_text="radar.csv").wait_for()
-    page.get_by_role("textbox", name="Track column").fill("track")
-    page.keyboard.press("Enter")
+    page.get_by_label("Track column").select_option("track")
     rows = page.locator("#pane-data .result-table tbody tr")
     rows.first.wait_for(timeout=120_000)
 

@@ -19,13 +19,15 @@ def command_line(command: str, arguments: Sequence[str], options: Mapping[str, A
     arguments : sequence of str
         What follows it.
     options : mapping of str to value
-        Values of options by the names of arguments of functions; lists are written with commas, and
-        None is left out.
+        Values of options by the names of arguments of functions; lists are written with commas,
+        True as the option alone, and None is left out.
     """
     words = ["fuzzytrack", command, *arguments]
     for name, value in options.items():
         if value is None:
             continue
         listed = isinstance(value, Sequence) and not isinstance(value, str)
-        words += [f"--{name.replace('_', '-')}", ",".join(value) if listed else f"{value}"]
+        words.append(f"--{name.replace('_', '-')}")
+        if value is not True:
+            words.append(",".join(map(str, value)) if listed else f"{value}")
     return shlex.join(words)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
@@ -14,6 +13,7 @@ from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MESSAGE_BYTES
 from fuzzytrack.studio.pages import Page
+from fuzzytrack.studio.reading_arguments import READING, reading_options
 from fuzzytrack.studio.recorded import Recorded, summary_of, tracked_as_json
 from fuzzytrack.studio.run_handlers import trackers_of
 from fuzzytrack.studio.tracker_texts import EDITOR, check_place
@@ -25,51 +25,51 @@ Answer = Mapping[str, Any]
 
 _MOST_TRIALS, _MOST_FOLDS, _MOST_RUNS, _MOST_SEED = 100_000, 100, 10_000, 2**53
 _STEPS = 100
-_COLUMNS = ("time", "id", "axes", "sigma", "truth")
 
 
 def upload(page: Page, given: Arguments) -> Later:
     """Take a recording, CSV, and say what is in it."""
     name = given.text("name", longest=100)
-    text = given.text("text", longest=MESSAGE_BYTES)
-    path = page.studio.uploads.put(page.key, name, text)
+    page.studio.uploads.put(page.key, name, given.text("text", longest=MESSAGE_BYTES))
+    return recording(page, given)
 
-    recording = _recorded(path, given)
+
+def recording(page: Page, given: Arguments) -> Later:
+    """Say what is in a recording."""
+    name = given.text("name")
+    found = _recorded(page, name, given)
 
     def work() -> Answer:
-        told = {"name": name, "columns": recording.columns(), "problem": None}
+        told = {"name": name, "columns": found.columns(), "problem": None}
         try:
-            return told | summary_of(recording.read())
-        except ValueError as failure:
+            return told | summary_of(found.read())
+        except (ValueError, OSError) as failure:
             # Another column may be all that is needed.
             return told | {"problem": str(failure), "plots": None, "tracks": None}
 
     return Later(work)
 
 
-def _recorded(path: Path, given: Arguments) -> Recorded:
-    """A recording with what the page says of its columns."""
-    return Recorded(
-        path,
-        time=given.text("time", None),
-        id=given.text("id", None),
-        axes=given.texts("axes", None),
-        sigma=given.number("sigma", None),
-        truth=given.texts("truth", None),
-    )
+def _recorded(page: Page, name: str, given: Arguments) -> Recorded:
+    """A recording with what the page says of it."""
+    path = page.studio.uploads.path(page.key, name)
+    options = reading_options(given)
+    truth = options.get("truth", ())
+    is_file = len(truth) == 1 and truth[0].lower().endswith(".csv")
+    true_file = page.studio.uploads.path(page.key, truth[0]) if is_file else None
+    return Recorded(path, options, true_file)
 
 
 def track(page: Page, given: Arguments) -> Later:
     """Track a recording with some trackers, and compare them."""
     name = given.text("name")
-    path = page.studio.uploads.path(page.key, name)
-    recording = _recorded(path, given)
+    found = _recorded(page, name, given)
     make = trackers_of(page, given.texts("trackers"))
 
     def work() -> Answer:
         trackers = make()
-        with naming(path):
-            return {"name": name, **tracked_as_json(recording.read(), trackers)}
+        with naming(found.path):
+            return {"name": name, **tracked_as_json(found.read(), trackers)}
 
     return Later(work)
 
@@ -81,7 +81,7 @@ def tune(page: Page, given: Arguments) -> Later:
     if text is None:
         page.session.check_loads("scenario")
     else:
-        data = _recorded(page.studio.uploads.path(page.key, text), given)
+        data = _recorded(page, text, given)
     free = given.text("free", None)
     tuning = Tuning(
         data,
@@ -117,7 +117,8 @@ def _tuned(page: Page, text: str) -> RuleBase | str:
 
 
 HANDLERS = {
-    "upload": Handler(upload, ("name", "text", *_COLUMNS)),
-    "track": Handler(track, ("name", "trackers", *_COLUMNS)),
-    "tune": Handler(tune, ("on", "tracker", "free", "trials", "folds", "runs", "seed", *_COLUMNS)),
+    "recording": Handler(recording, ("name", *READING)),
+    "upload": Handler(upload, ("name", "text", *READING)),
+    "track": Handler(track, ("name", "trackers", *READING)),
+    "tune": Handler(tune, ("on", "tracker", "free", "trials", "folds", "runs", "seed", *READING)),
 }

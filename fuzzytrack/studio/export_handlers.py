@@ -12,6 +12,7 @@ from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
 from fuzzytrack.studio.pages import Page
+from fuzzytrack.studio.reading_arguments import READING, reading_options
 from fuzzytrack.studio.snippets import (
     PageTexts,
     RunSnippet,
@@ -28,7 +29,7 @@ Answer = Mapping[str, Any]
 _RUNS = 200
 _OF_SNIPPETS = (
     *("trackers", "runs", "seed", "name", "on", "tracker", "free", "trials", "folds"),
-    *("time", "id", "axes", "sigma", "truth"),
+    *READING,
 )
 
 
@@ -80,7 +81,7 @@ def _track(page: Page, given: Arguments) -> Snippet:
         _texts(page),
         name=given.text("name"),
         trackers=given.texts("trackers", [EDITOR]),
-        options=_columns(given),
+        options=reading_options(given),
     )
 
 
@@ -94,20 +95,9 @@ def _tune(page: Page, given: Arguments) -> Snippet:
         options={
             "free": None if not free else [word.strip() for word in free.split(",")],
             **{name: given.whole(name, 0, 2**53, None) for name in numbers},
-            **_columns(given),
+            **reading_options(given),
         },
     )
-
-
-def _columns(given: Arguments) -> dict[str, Any]:
-    """What is said of the columns of a recording."""
-    return {
-        "time": given.text("time", None),
-        "id": given.text("id", None),
-        "axes": given.texts("axes", None),
-        "sigma": given.number("sigma", None),
-        "truth": given.texts("truth", None),
-    }
 
 
 def report(page: Page, given: Arguments) -> Later:

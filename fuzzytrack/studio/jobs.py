@@ -16,7 +16,15 @@ from fuzzytrack.errors import NoRuleFiresWarning, TrackWarning
 from fuzzytrack.studio.limits import SILENCE
 from fuzzytrack.workers import end_processes, process_pool
 
-__all__ = ["CancelledJobError", "Job", "Jobs", "Report", "Work", "warnings_to_jobs"]
+__all__ = [
+    "CancelledJobError",
+    "Job",
+    "Jobs",
+    "Report",
+    "Work",
+    "noted_warnings",
+    "warnings_to_jobs",
+]
 
 # Shortest time between two reports of one job, s.
 _PAUSE = 0.1
@@ -205,7 +213,7 @@ class Jobs:
 
     def _do(self, job: Job, work: Work, pool: ProcessPoolExecutor) -> None:
         """Do the work; runs in a thread of its own."""
-        _thread.job = job
+        _thread.notes = job.notes
         try:
             job.finish(work(job, pool))
         except CancelledJobError:
@@ -225,16 +233,17 @@ class Jobs:
 def warnings_to_jobs() -> Iterator[None]:
     """Give warnings about tracks to the job in whose thread they are issued, as its notes.
 
-    Others are shown as before. It holds for the whole program, so it is for its first thread.
+    Or to `noted_warnings`; others are shown as before. It holds for the whole program, so it is for
+    its first thread.
     """
     shown = warnings.showwarning
 
     def show(message: Warning | str, *where: Any, **more: Any) -> None:
-        job: Job | None = getattr(_thread, "job", None)
-        if job is None:
+        notes: list[str] | None = getattr(_thread, "notes", None)
+        if notes is None:
             shown(message, *where, **more)
-        elif str(message) not in job.notes and len(job.notes) < _MOST_NOTES:
-            job.notes.append(str(message))
+        elif str(message) not in notes and len(notes) < _MOST_NOTES:
+            notes.append(str(message))
 
     with warnings.catch_warnings():
         for category in (TrackWarning, NoRuleFiresWarning):
@@ -242,6 +251,17 @@ def warnings_to_jobs() -> Iterator[None]:
             warnings.simplefilter("always", category)
         warnings.showwarning = show
         yield
+
+
+@contextmanager
+def noted_warnings() -> Iterator[list[str]]:
+    """Gather the warnings about tracks that this thread issues, as `warnings_to_jobs` does."""
+    notes: list[str] = []
+    _thread.notes = notes
+    try:
+        yield notes
+    finally:
+        _thread.notes = None
 
 
 def _processes() -> int:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.ragged import run_tracks, sigmas_of
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
 from fuzzytrack.studio.folder import naming
+from fuzzytrack.studio.jobs import noted_warnings
+from fuzzytrack.studio.reading_arguments import check_truth
 from fuzzytrack.studio.uploads import check_plots
 from fuzzytrack.testbed.recorded_comparison import compare_used
 from fuzzytrack.testbed.recorded_scores import RecordedComparison, RecordedScore
@@ -30,43 +33,41 @@ _LINE = 100_000
 
 @dataclass(frozen=True)
 class Recorded:
-    """A recording, and what a page says of its columns.
+    """A recording, and what a page says of it.
 
     Attributes
     ----------
     path : Path
-    time, id : str or None
-        Columns; found by their names unless given, where that is certain.
-    axes : sequence of str or None
-        Columns of positions; likewise.
-    sigma : float or None
-        Standard deviation of the plots (m); estimated from them unless given.
-    truth : sequence of str or None
-        Columns with true positions.
+    options : mapping of str to value
+        See `fuzzytrack.studio.reading_arguments.reading_options`; what is not in it is found by the
+        names of the columns, where that is certain, and the noise is estimated.
+    true_file : Path or None
+        File of true positions; ``truth`` of the options has columns of the recording unless given.
     """
 
     path: Path
-    time: str | None = None
-    id: str | None = None
-    axes: Sequence[str] | None = None
-    sigma: float | None = None
-    truth: Sequence[str] | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    true_file: Path | None = None
 
     @property
-    def options(self) -> dict[str, Any]:
-        """What is said of the columns, as functions take it."""
-        given = {
-            "time": self.time,
-            "id": self.id,
-            "axes": None if self.axes is None else list(self.axes),
-            "sigma": self.sigma,
-        }
-        return {name: value for name, value in given.items() if value is not None}
+    def truth(self) -> str | None:
+        """True positions, as functions take them: a file, or columns of the recording.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column.
+        """
+        columns = self.options.get("truth")
+        if self.true_file is not None or columns is None:
+            return None if self.true_file is None else str(self.true_file)
+        check_truth(self.columns(), columns)
+        return ",".join(columns)
 
     @property
-    def true_columns(self) -> str | None:
-        """Columns with true positions, as functions take them."""
-        return None if self.truth is None else ",".join(self.truth)
+    def reading(self) -> dict[str, Any]:
+        """How the file is read, without its truth."""
+        return {name: value for name, value in self.options.items() if name != "truth"}
 
     def columns(self) -> list[str]:
         """Names in the first line of the file."""
@@ -82,20 +83,41 @@ class Recorded:
             If there are too many plots, or they cannot be read.
         """
         check_plots(self.path)
-        with naming(self.path):
-            reading = Reading.of(**self.options)
-            return read_used_plots(self.path, reading, truth=self.true_columns)
+        with naming(self.path), naming(self.true_file or self.path):
+            reading = Reading.of(**self.reading)
+            return read_used_plots(self.path, reading, truth=self.truth)
 
 
 def summary_of(used: UsedPlots) -> dict[str, Any]:
     """What was read, in numbers."""
+    columns = used.decoder.columns
     return {
+        "found": {
+            "time": columns.time,
+            "id": columns.id,
+            "position": columns.position,
+            "places": columns.read,
+            "axes": columns.axes,
+        },
         "plots": sum(int((~np.isnan(t.plots).any(axis=1)).sum()) for t in used.tracks),
         "tracks": len(used.tracks),
         "axes": used.tracks[0].plots.shape[1] if used.tracks else 0,
-        "sigma": used.decoder.sigma,
+        "noise": _noise_as_json(used.decoder),
         "notes": used.notes,
     }
+
+
+def _noise_as_json(decoder: PlotDecoder) -> list[dict[str, Any]]:
+    """Standard deviation of each coordinate, or its column; what is estimated has an error."""
+    errors = decoder.noise_errors or (None,) * len(decoder.noise)
+    return [
+        {
+            "sigma": sigma,
+            "error": error,
+            "unit": "°" if decoder.noise_is_polar and k else "m",
+        }
+        for k, (sigma, error) in enumerate(zip(decoder.noise, errors, strict=True))
+    ]
 
 
 def tracked_as_json(used: UsedPlots, trackers: Mapping[str, Tracker]) -> dict[str, Any]:
@@ -109,21 +131,33 @@ def tracked_as_json(used: UsedPlots, trackers: Mapping[str, Tracker]) -> dict[st
     Returns
     -------
     dict
-        What `summary_of` gives; ``shown`` and ``tracks``: the first tracks with ``id``, ``time``,
+        What `summary_of` gives; ``drawn``: the first tracks, with ``id``, ``time``,
         ``plots``, ``truth`` and for each of ``trackers`` ``predicted``, ``filtered``,
         ``innovation``; and ``comparison``: ``columns`` (key, title, unit) and ``rows``.
     """
-    compared = compare_used(dict(trackers), used)
-    shown = _shown(used)
+    with noted_warnings() as warned:
+        compared = compare_used(dict(trackers), used)
+        drawn = [_track_as_json(track, used, trackers) for track in _drawn(used)]
+    summary = summary_of(used)
     return {
-        **summary_of(used),
-        "shown": len(shown),
-        "tracks": [_track_as_json(track, used, trackers) for track in shown],
+        **summary,
+        "notes": [*summary["notes"], *_by_name(warned, trackers)],
+        "drawn": drawn,
         "comparison": _comparison_as_json(compared),
     }
 
 
-def _shown(used: UsedPlots) -> list[Track]:
+def _by_name(warned: Sequence[str], trackers: Mapping[str, Tracker]) -> list[str]:
+    """Warnings with the names of the trackers, each once; they begin with those as Python."""
+    names: dict[str, list[str]] = {}
+    for text in warned:
+        found = [name for name, each in trackers.items() if text.startswith(f"{each!r}: ")]
+        said = text.removeprefix(f"{trackers[found[0]]!r}: ") if found else text
+        names.setdefault(said, []).extend(found)
+    return [f"{', '.join(each)}: {said}" if each else said for said, each in names.items()]
+
+
+def _drawn(used: UsedPlots) -> list[Track]:
     """Tracks that are drawn: the first ones, up to so many plots."""
     found: list[Track] = []
     left = _PLOTS
@@ -159,16 +193,16 @@ def _track_as_json(
 
 def _comparison_as_json(found: RecordedComparison) -> dict[str, Any]:
     columns = [
-        ("rms", "RMS of innovations", "m"),
-        ("change", "against the first", "%"),
-        ("log_likelihood", "log-likelihood of a plot", "nats"),
-        ("outside", "plots beyond three sigma", "%"),
-        ("whiteness", "correlation of innovations", ""),
+        ("rms", "RMS innovation", "m"),
+        ("change", "Change", "%"),
+        ("log_likelihood", "Log-likelihood", "nats"),
+        ("outside", "Beyond 3 σ", "%"),
+        ("whiteness", "Correlation", ""),
     ]
     if found.has_truth:
         columns[:0] = [
-            ("predicted", "RMSE of prediction", "m"),
-            ("filtered", "RMSE of estimate", "m"),
+            ("predicted", "RMSE predicted", "m"),
+            ("filtered", "RMSE filtered", "m"),
         ]
     rows = [
         {"name": each.name, "mark": mark, **_row(each)}

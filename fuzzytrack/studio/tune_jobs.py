@@ -57,7 +57,8 @@ def tune_work(tuning: Tuning) -> Work:
             if isinstance(data, Recorded):
                 check_plots(data.path)
                 stack.enter_context(naming(data.path))
-                own = {**data.options, "truth": data.true_columns}
+                stack.enter_context(naming(data.true_file or data.path))
+                own = {**data.reading, "truth": data.truth}
             found = tune(
                 data.path if isinstance(data, Recorded) else data,
                 tuning.tracker,

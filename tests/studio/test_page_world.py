@@ -4,7 +4,10 @@ import re
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from fuzzytrack.cli.app import app
+from fuzzytrack.studio.jobs import warnings_to_jobs
 from fuzzytrack.testbed.montecarlo import monte_carlo
 
 playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
@@ -153,6 +156,30 @@ def test_a_run_is_canceled_and_another_one_can_begin(studio):
     expect(studio.locator("#pane-run").get_by_role("button", name="Run")).to_be_visible()
 
 
+def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server):
+    path = server.folder / "radar.csv"
+    assert CliRunner().invoke(app, ["sample", "radar", "-o", str(path)]).exit_code == 0
+    studio.reload()
+    view(studio, "Data")
+    studio.get_by_label("File", exact=True).select_option("radar.csv")
+    expect(studio.get_by_role("alert")).to_have_text(
+        "radar.csv: no columns x, y.Use range, azimuth as range and azimuth"
+    )
+    studio.get_by_role("button", name="Use range, azimuth as range and azimuth").click()
+    with warnings_to_jobs():
+        studio.get_by_role("button", name="Use track as the track column").click()
+    facts = studio.locator("#pane-data .what")
+    expect(facts).to_contain_text("6 tracks", timeout=60_000)
+    expect(studio.get_by_label("Positions")).to_have_value("polar")
+    # What is estimated stands where it can be typed; 30 m and 0.1 degrees are true.
+    expect(studio.get_by_role("textbox", name="Range σ")).to_have_attribute("placeholder", "≈ 30")
+    studio.get_by_role("textbox", name="Range σ").fill("25")
+    studio.keyboard.press("Enter")
+    expect(facts).to_contain_text("σ 25 m", timeout=60_000)
+    studio.reload()
+    expect(facts).to_contain_text("σ 25 m", timeout=60_000)
+
+
 @pytest.fixture(scope="module")
 def csv():
     """Two tracks of a target that turns, with the truth beside the plots."""
@@ -183,8 +210,7 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv
     drop(studio, "mine.csv", csv)
     # Two tracks without the column that tells them apart: the page says so, and takes the name.
     expect(studio.get_by_role("alert")).to_contain_text("mine.csv: row 112")
-    studio.get_by_role("textbox", name="Track column").fill("id")
-    studio.keyboard.press("Enter")
+    studio.get_by_label("Track column").select_option("id")
     rows = studio.locator("#pane-data .result-table tbody tr")
     expect(rows).to_have_count(5, timeout=60_000)
     expect(studio.locator("#pane-data")).to_contain_text("220 plots")

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
 from fuzzytrack.fuzzy.loading import loads_rulebase
+from fuzzytrack.studio.jobs import warnings_to_jobs
 
 TRACKERS = ["fixed:alpha=0.5377:beta=0.2018", "stiffness-damping"]
 
@@ -43,8 +44,8 @@ def test_a_recording_is_tracked_and_compared_as_by_the_command(page, csv, tmp_pa
         assert row["rms"] == score["rms"]
         assert row["predicted"] == score["true"]["predicted"]
     assert found["comparison"]["columns"][0][0] == "predicted"
-    assert [(t["id"], len(t["time"])) for t in found["tracks"]] == [("a", 110), ("b", 110)]
-    drawn = found["tracks"][1]["trackers"]["stiffness-damping"]
+    assert [(t["id"], len(t["time"])) for t in found["drawn"]] == [("a", 110), ("b", 110)]
+    drawn = found["drawn"][1]["trackers"]["stiffness-damping"]
     assert len(drawn["filtered"]) == 110
     assert drawn["innovation"][0] == [None, None]
     # The editor holds the same rule base; without a number the noise is estimated.
@@ -84,6 +85,62 @@ def test_a_rule_base_is_tuned_and_opens_in_the_editor(page, csv):
 )
 def test_what_cannot_be_done_with_a_recording_is_refused(page, command, arguments, message):
     assert message in page.refused(command, **arguments)
+
+
+def test_polar_plots_are_tracked_as_by_the_command(page, server, tmp_path):
+    path = server.folder / "radar.csv"
+    assert CliRunner().invoke(app, ["sample", "radar", "-o", str(path)]).exit_code == 0
+    found = page.ask("recording", name="radar.csv")
+    assert found["columns"] == ["time", "track", "range", "azimuth"]
+    # The remedy in the refusal, which the page offers, is one of its arguments.
+    assert "`polar`=range,azimuth" in found["problem"]
+    said = {"id": "track", "polar": ["range", "azimuth"], "sigma_range": 30, "sigma_azimuth": 0.1}
+    found = page.ask("recording", name="radar.csv", **said)
+    assert found["problem"] is None
+    assert found["found"] == {
+        "time": "time",
+        "id": "track",
+        "position": "polar",
+        "places": ["range", "azimuth"],
+        "axes": ["x", "y"],
+    }
+    assert [(each["sigma"], each["unit"]) for each in found["noise"]] == [(30, "m"), (0.1, "°")]
+    found = page.ask("recording", name="radar.csv", id="track", polar=["range", "azimuth"])
+    estimated = [(each["sigma"], each["error"]) for each in found["noise"]]
+    for (sigma, error), true in zip(estimated, (30, 0.1), strict=True):
+        assert abs(sigma - true) < 4 * error < true
+    found = page.ask("track", name="radar.csv", trackers=TRACKERS, **said)
+    command = ["compare", str(path), "--trackers", ",".join(TRACKERS), "--id", "track", "--json"]
+    command += ["--polar", "range,azimuth", "--sigma-range", "30", "--sigma-azimuth", "0.1"]
+    expected = json.loads(CliRunner().invoke(app, command).output)["trackers"]
+    assert [row["rms"] for row in found["comparison"]["rows"]] == [s["rms"] for s in expected]
+    assert len(expected) == 2
+
+
+def test_warnings_about_tracks_are_notes_with_the_names_of_trackers(page, server):
+    path = server.folder / "radar.csv"
+    CliRunner().invoke(app, ["sample", "radar", "-o", str(path)])
+    with warnings_to_jobs():
+        found = page.ask(
+            "track", name="radar.csv", trackers=["editor", *TRACKERS], polar=["range", "azimuth"]
+        )
+    (said,) = [note for note in found["notes"] if "its gains do not suit times" in note]
+    assert said.startswith("editor, fixed:alpha=0.5377:beta=0.2018, stiffness-damping: its gains")
+
+
+def test_the_truth_is_in_columns_or_a_file_of_the_folder(page, server, csv, tmp_path):
+    (server.folder / "true.csv").write_text(csv)
+    outside = tmp_path / "outside"
+    outside.mkdir(exist_ok=True)
+    (outside / "true.csv").write_text(csv)
+    page.ask("upload", name="mine.csv", text=csv)
+    said = {"name": "mine.csv", "trackers": TRACKERS[:1], "id": "id"}
+    found = page.ask("track", truth=["true.csv"], **said)
+    assert found["comparison"]["columns"][0][0] == "predicted"
+    for truth in (f"{outside}/true.csv", "../outside/true.csv"):
+        assert "must be the name of a file" in page.refused("track", truth=[truth], **said)
+    for truth in (["/etc/passwd"], ["true_x", "."]):
+        assert f"`truth`: no column {truth[-1]!r}" in page.refused("track", truth=truth, **said)
 
 
 def test_a_refusal_does_not_name_the_folder(page, csv):

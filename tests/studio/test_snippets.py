@@ -55,6 +55,13 @@ def test_commands_name_what_is_saved(page, server, monkeypatch):
         *["fuzzytrack", "compare", "a b.csv", "--trackers", "stiffness-damping"],
         *["--id", "ship", "--truth", "x,y"],
     ]
+    polar = {"name": "a.csv", "trackers": ["chan-style"], "polar": ["r", "az"], "sigma_range": 30}
+    polar |= {"sort": True, "duplicates": "first", "site": [52.5, 5]}
+    text = page.ask("snippet", what="command", of="track", **polar)["text"]
+    assert text == (
+        "fuzzytrack compare a.csv --trackers chan-style --duplicates first --polar r,az "
+        "--sigma-range 30.0 --site 52.5,5.0 --sort"
+    )
     tune = {"free": "outputs, sets", "trials": 7, "sigma": 2.5}
     text = page.ask("snippet", what="command", of="tune", **tune)["text"]
     assert text == (

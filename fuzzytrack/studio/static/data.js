@@ -1,26 +1,37 @@
 /* The pane of own data: tracks of a recording, innovations, and how the trackers compare on it. */
 
 import { makeChart } from "./chart.js";
+import { argumentsOf, inFields } from "./columns.js";
 import { html, select } from "./elements.js";
 import { action, group } from "./fields.js";
 import { figure } from "./figure.js";
 import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
-import { even, shown } from "./numbers.js";
+import { even, shown, withPlaces } from "./numbers.js";
 import { chosenTrackers, trackerList } from "./pick.js";
-import { columnsOf, recordingForm } from "./recording.js";
+import { recordingForm, withRemedies } from "./recording.js";
 import { lineButton } from "./resulttable.js";
 import { makeTrackPicture } from "./trackpicture.js";
 
 export const title = "Own data";
-const AXES = ["x", "y", "z"];
+
+// What the columns of the comparison say.
+const HELP = {
+  predicted: "Root mean square distance of the predictions to the truth",
+  filtered: "Root mean square distance of the estimates to the truth",
+  rms: "Root mean square of the innovations: plot minus prediction, the noise of the plots included",
+  change: "Error of prediction against that of the first tracker, with its 95 % interval; of the innovations where there is no truth",
+  log_likelihood: "Mean logarithm of the density that the tracker predicted at a plot; more is better. Trackers without a covariance have none",
+  outside: "Plots farther than three standard deviations from their prediction, by the tracker's own covariance",
+  whiteness: "Correlation of successive innovations; 0 for a filter that fits the target",
+};
 
 export function mount(element, app) {
   const { store, socket, say } = app;
   const recording = recordingForm(app, run);
   const picks = trackerList(app);
   const compare = action("Track and compare", run, { class: "primary" });
-  const facts = html("p", { class: "muted" });
+  const facts = html("p", { class: "muted what" });
   const notes = html("ul", { class: "notes", tabindex: 0, "aria-label": "Notes" });
   const table = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" });
   const which = select("Track", [], "", (value) => store.set({ trackShown: Number(value) }));
@@ -41,15 +52,11 @@ export function mount(element, app) {
       figure(app, "Innovations", "data-innovations", innovations, lines, [axis]),
     ),
   );
-  const empty = html(
-    "div",
-    { class: "nothing" },
-    html(
-      "p",
-      {},
-      "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared.",
-    ),
-  );
+  const hint = html("p");
+  const empty = html("div", { class: "nothing" }, hint);
+  const progress = html("progress", { "aria-label": "Tracking" });
+  // Numbers of questions, of which the last one counts.
+  let asked = 0;
 
   element.append(
     html(
@@ -63,7 +70,7 @@ export function mount(element, app) {
     html(
       "div",
       { class: "beside" },
-      html("div", { class: "tall" }, empty, body),
+      html("div", { class: "tall" }, html("div", { class: "progress" }, progress), empty, body),
       html("div", { class: "side" }, recording.element, group("Trackers", picks.element)),
     ),
   );
@@ -72,7 +79,7 @@ export function mount(element, app) {
   function keepers() {
     const { tracked, recording: name } = store.now;
     if (!tracked) return [{ heading: "Track and compare first" }];
-    const args = { name, trackers: chosenTrackers(store.now), ...columnsOf(store.now) };
+    const args = { name, trackers: chosenTrackers(store.now), ...argumentsOf(store.now) };
     return [
       ...numberEntries(tracked.name, tracked, tracked.comparison.rows),
       ...scriptEntries(app, "track", args),
@@ -84,12 +91,18 @@ export function mount(element, app) {
     const trackers = chosenTrackers(store.now);
     if (!name) return say("There is no recording: drop a CSV file, or choose one in the folder.", "error");
     if (!trackers.length) return say("No tracker is chosen: check one in the list, or add one.", "error");
+    const number = (asked += 1);
+    store.set({ tracking: true });
     try {
-      const tracked = await socket.send("track", { name, trackers, ...columnsOf(store.now) });
-      store.set({ tracked, trackShown: 0, axisShown: 0 });
-      say(`${name}: ${tracked.plots} plots are tracked.`);
+      const tracked = await socket.send("track", { name, trackers, ...argumentsOf(store.now) });
+      if (number !== asked) return;
+      const kept = tracked.name === store.now.tracked?.name;
+      store.set({ tracked, ...(kept ? {} : { trackShown: 0, axisShown: 0 }) });
+      say("");
     } catch (error) {
-      say(error.message, "error");
+      if (number === asked) say(inFields(error.message), "error");
+    } finally {
+      if (number === asked) store.set({ tracking: false });
     }
   }
 
@@ -100,18 +113,24 @@ export function mount(element, app) {
     if (!tracked) return;
     facts.textContent = factsOf(tracked);
     notes.hidden = !tracked.notes.length;
-    notes.replaceChildren(...tracked.notes.map((text) => html("li", {}, text)));
+    notes.replaceChildren(...tracked.notes.map((text) => html("li", {}, ...withRemedies(text, recording.put))));
     showTable(tracked, hidden);
     which.replaceChildren(
-      ...tracked.tracks.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")),
+      ...tracked.drawn.map(({ id }, k) => html("option", { value: k }, id ? `track ${id}` : "the track")),
     );
     which.value = String(trackShown);
-    axis.replaceChildren(...AXES.slice(0, tracked.axes).map((name, k) => html("option", { value: k }, name)));
+    axis.replaceChildren(...tracked.found.axes.map((name, k) => html("option", { value: k }, name)));
     axis.value = String(axisShown);
     innovations.show(innovationsOf(now));
     picture.redraw();
   });
   store.follow(["tracked", "trackShown"], () => picture.fit());
+  store.follow(["tracking"], ({ tracking }) => {
+    progress.hidden = !tracking;
+  });
+  store.follow(["tracking", "recording", "described"], (now) => {
+    hint.textContent = hintOf(now);
+  });
 
   function showTable(tracked, hidden) {
     const held = [...table.querySelectorAll("button")].indexOf(document.activeElement);
@@ -121,8 +140,15 @@ export function mount(element, app) {
   }
 }
 
+function hintOf({ tracking, recording, described }) {
+  if (tracking) return `${recording} is being tracked.`;
+  if (described?.problem) return `${recording} cannot be read yet: the message below its name says why.`;
+  if (recording) return `Track and compare: all trackers that are checked follow the tracks of ${recording}.`;
+  return "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared.";
+}
+
 function shownTrack({ tracked, trackShown }) {
-  return tracked?.tracks[trackShown] ?? null;
+  return tracked?.drawn[trackShown] ?? null;
 }
 
 /** What the trackers that are not hidden made of the track: {name, index, filtered, innovation}. */
@@ -156,19 +182,25 @@ function innovationsOf(now) {
   };
 }
 
-function factsOf({ name, plots, tracks, sigma, comparison, shown: drawn }) {
-  const words = [name, `${shown(plots, 7)} plots`, tracks.length > 1 ? `${drawn} tracks drawn` : "1 track"];
-  if (sigma)
-    words.push(
-      `σ ${[sigma]
-        .flat()
-        .map((value) => shown(value, 3))
-        .join(", ")} m`,
-    );
+function factsOf({ name, plots, tracks, noise, comparison, drawn }) {
+  const words = [name, `${shown(plots, 7)} plots`, tracks === 1 ? "1 track" : `${tracks} tracks`];
+  const seen = drawn.reduce((sum, { time }) => sum + time.length, 0);
+  if (drawn.length < tracks || seen < plots)
+    words.push(`the first ${drawn.length > 1 ? `${drawn.length} tracks, ` : ""}${seen} plots drawn`);
+  if (noise.length) words.push(noiseInWords(noise));
   words.push(`${shown(comparison.scored, 7)} innovations compared`);
   if (Number.isFinite(comparison.measured_rmse))
     words.push(`RMSE of the plots ${shown(comparison.measured_rmse, 4)} m`);
   return words.join(" · ");
+}
+
+/** Standard deviations of the plots; those that are estimated with ≈. */
+function noiseInWords(noise) {
+  const each = noise.map(({ sigma, error, unit }) => {
+    if (typeof sigma === "string") return `column ${sigma}`;
+    return sigma === null ? "not known" : `${error ? "≈ " : ""}${shown(sigma, 3)} ${unit}`;
+  });
+  return `σ ${[...new Set(each)].join(", ")}`;
 }
 
 function comparisonTable({ comparison: { columns, rows } }, hidden, toggle) {
@@ -183,7 +215,9 @@ function comparisonTable({ comparison: { columns, rows } }, hidden, toggle) {
         "tr",
         {},
         html("th", { scope: "col" }, "Tracker"),
-        ...columns.map(([, text, unit]) => html("th", { scope: "col" }, text, html("small", {}, unit))),
+        ...columns.map(([key, text, unit]) =>
+          html("th", { scope: "col", title: HELP[key] }, text, html("small", {}, unit)),
+        ),
       ),
     ),
     html(
@@ -214,10 +248,11 @@ function cellOf(row, key) {
   const value = row[key];
   if (typeof value !== "number") return html("td", {}, "–");
   const [low, high] = [row[`${key}_low`], row[`${key}_high`]];
+  const interval = Number.isFinite(low) ? `, 95 % interval ${low} to ${high}` : "";
   return html(
     "td",
-    { title: String(value), "data-key": key, "data-value": value },
-    even(value, 4),
-    Number.isFinite(low) ? html("span", { class: "se" }, ` [${shown(low, 3)}, ${shown(high, 3)}]`) : null,
+    { title: `${value}${interval}`, "data-key": key, "data-value": value },
+    key === "change" || key === "outside" ? withPlaces(value, 1) : even(value, 4),
+    Number.isFinite(low) ? html("small", { class: "se" }, `${shown(low, 3)} to ${shown(high, 3)}`) : null,
   );
 }

@@ -19,19 +19,19 @@ const INITIAL = {
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
   resultsTab: "all", hidden: [], sorting: { key: null, down: false }, quantity: "predicted", band: "se",
-  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, uploaded: null, trackShown: 0,
+  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, described: null, tracking: false, trackShown: 0,
   axisShown: 0,
   // How.
   points: 41, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
   shadeVisits: false, palette: "viridis", scheme: "light",
-  trackers: [], wantedRuns: 200, seed: 0, sigma: null, columns: { time: "", id: "", axes: "", truth: "" }, tuneOn: "scenario",
+  trackers: [], wantedRuns: 200, seed: 0, readings: {}, tuneOn: "scenario",
   tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },
 };
 const KEPT = [
   "session", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "axes", "point", "camera",
   "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
   "asked", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
-  "trackers", "wantedRuns", "seed", "sigma", "columns", "tuneOn", "tuning",
+  "trackers", "wantedRuns", "seed", "readings", "uploads", "tuneOn", "tuning",
 ];
 const SCHEME = "fuzzytrack scheme";
 

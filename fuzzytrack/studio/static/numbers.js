@@ -1,14 +1,20 @@
 /* Numbers as they are shown and typed, and ticks of axes. */
 
+// From here on a number has an exponent, or its zeros would take the room of the picture.
+const [TINY, HUGE] = [1e-6, 1e7];
+
 /** A number with at most so many significant digits and a true minus sign. */
 export function shown(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  const text = String(Number(value.toPrecision(digits)));
-  return text.replace("-", "−");
+  const rounded = Number(value.toPrecision(digits));
+  const size = Math.abs(rounded);
+  const text = size >= HUGE || (size > 0 && size < TINY) ? rounded.toExponential() : String(rounded);
+  return text.replaceAll("-", "−").replace("+", "");
 }
 
 /** A number with all its significant digits, trailing zeros too, so that a column is aligned. */
 export function even(value, digits) {
+  if (Math.abs(value) >= HUGE) return shown(value, digits);
   return value === 0 ? "0" : withPlaces(value, placesOf(value, digits));
 }
 
@@ -24,7 +30,7 @@ export function withPlaces(value, places) {
 
 /** A typed number; a decimal comma and the true minus sign are taken too. NaN if it is none. */
 export function typed(text) {
-  const plain = text.trim().replace("−", "-").replace(",", ".");
+  const plain = text.trim().replaceAll("−", "-").replace(",", ".");
   return plain === "" ? NaN : Number(plain);
 }
 

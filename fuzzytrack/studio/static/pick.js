@@ -10,6 +10,9 @@ const OWN = [
   ["saved", "as it was last saved"],
 ];
 
+// What `fuzzytrack compare` compares unless it is told others.
+const FOR_RECORDINGS = ["maneuver", "fixed:alpha=0.5377:beta=0.2018", "chan-style", "stiffness-damping"];
+
 /** Trackers of a text: its name, and its parameters as [[name, value]]. */
 function splitTracker(text) {
   const [name, ...parts] = text.split(":");
@@ -55,7 +58,7 @@ export function trackerList({ store }) {
     return menu("Add a tracker", [icon("add"), "Add"], () => {
       const { hello, files } = store.now;
       const kinds = [...new Set(hello.trackers.map(({ kind }) => kind))];
-      const own = files.filter(({ kind }) => kind === "rulebase");
+      const own = files.filter(({ kind }) => kind === "rules");
       const entry = (name) => ({ text: name, run: () => add(name) });
       return [
         { heading: "On this page" },
@@ -75,6 +78,7 @@ export function trackerList({ store }) {
     const own = scenario?.scenario?.trackers ?? [];
     return [
       { text: "Those of the scenario, and the editor", run: () => all(["editor", ...own]) },
+      { text: "Those for recordings, and the editor", run: () => all(["editor", ...FOR_RECORDINGS]) },
       {
         text: "All that are registered",
         run: () => all(["editor", ...hello.trackers.filter(runnable).map(({ name }) => name)]),

@@ -1,34 +1,36 @@
-/* The form of a recording: dropped or chosen in the folder, its columns and the noise of its plots. */
+/* The form of a recording: dropped or chosen in the folder, its columns, noise and faults. */
 
-import { html, select } from "./elements.js";
+import { argumentsOf, inFields, NOTHING, POSITIONS, readingOf, remedies } from "./columns.js";
+import { check, html, select } from "./elements.js";
 import { group, numberField, textField } from "./fields.js";
 import { shown } from "./numbers.js";
 
 // Bytes of a message besides the text of a file.
 const OVERHEAD = 1000;
-const COLUMNS = [
-  ["time", "Time column", "by name", "Column of time, s"],
-  ["id", "Track column", "one track", "Column that tells the tracks apart"],
-  ["axes", "Position columns", "by name", "Columns of position, m: x,y"],
-  ["truth", "Truth columns", "none", "Columns of true position, m: true_x,true_y"],
-];
+const CHOICES = {
+  azimuth_from: [
+    ["", "north"],
+    ["east", "east"],
+  ],
+  time_unit: [
+    ["", "by name or size"],
+    ["s", "s"],
+    ["ms", "ms"],
+    ["us", "µs"],
+    ["ns", "ns"],
+  ],
+  duplicates: [
+    ["", "refused"],
+    ["first", "the first plot"],
+    ["last", "the last plot"],
+    ["mean", "their mean"],
+  ],
+};
 
-/** What commands are told of the recording: its columns and noise. */
-export function columnsOf({ columns, sigma }) {
-  const list = (text) => text.split(",").map((word) => word.trim());
-  const given = { time: columns.time, id: columns.id };
-  if (columns.axes) given.axes = list(columns.axes);
-  if (columns.truth) given.truth = list(columns.truth);
-  if (sigma !== null) given.sigma = sigma;
-  return Object.fromEntries(Object.entries(given).filter(([, value]) => value !== ""));
-}
-
-/** The form; `taken()` is called when another recording can be tracked. */
-export function recordingForm({ store, socket, say }, taken) {
-  const chosen = select("Recording", [], "", (name) => {
-    store.set({ recording: name || null, uploaded: null });
-    if (name) taken();
-  });
+/** The form; `taken()` is called when a recording can be tracked. */
+export function recordingForm(app, taken) {
+  const { store, socket, say } = app;
+  const chosen = select("File", [], "", choose);
   const input = html("input", {
     type: "file",
     accept: ".csv,.txt,text/csv",
@@ -42,37 +44,117 @@ export function recordingForm({ store, socket, say }, taken) {
     { type: "button", class: "drop", onclick: () => input.click() },
     "Drop a CSV file here, or press to choose one",
   );
-  const fields = COLUMNS.map(([key, label, usual, help]) => [
-    key,
-    textField(label, usual, (text) => setColumn(key, text), help),
-  ]);
-  const sigma = numberField("Plot σ", "m", (value) => store.set({ sigma: value }), {
+  const problem = html("div", { class: "failed", role: "alert" });
+  const columns = ["time", "id"].map((key) => select("", [], "", (value) => put({ [key]: value })));
+  const position = select(
+    "Positions",
+    Object.entries(POSITIONS).map(([key, { text }]) => [key, text]),
+    "axes",
+    (value) => put({ position: value, places: ["", "", ""] }),
+  );
+  const places = [0, 1, 2].map((k) =>
+    select("", [], "", (value) => {
+      put({ places: readingOf(store.now).places.map((each, j) => (j === k ? value : each)) });
+    }),
+  );
+  const placeFields = places.map((each) => field("", each));
+  const noise = [0, 1, 2].map((k) =>
+    numberField("", "", (value) => putNoise(k, value), { least: 0, empty: true }),
+  );
+  const truth = textField(
+    "Truth",
+    "none",
+    (text) => put({ truth: text }),
+    "Columns with the true positions, such as true_x,true_y, or a CSV file of the folder",
+  );
+  const choices = Object.fromEntries(
+    Object.entries(CHOICES).map(([key, options]) => [
+      key,
+      select("", options, "", (value) => put({ [key]: value })),
+    ]),
+  );
+  choices.azimuth_from.title = "Azimuths grow clockwise from north, or counterclockwise from east";
+  const azimuth = field("Azimuth from", choices.azimuth_from);
+  const gap = numberField("Longest gap", "s", (value) => put({ max_gap: value }), {
     least: 0,
-    title: "Standard deviation of the plots; estimated from them if it is left empty",
     empty: true,
+    title: "A longer time without a plot ends the track",
   });
-  sigma.input.placeholder = "estimated";
-  const problem = html("p", { class: "failed", role: "alert" });
-  const known = html("p", { class: "muted" });
+  gap.input.placeholder = "automatic";
+  const sort = check("Sort by time", false, (value) => put({ sort: value }));
+  const form = html(
+    "div",
+    { class: "form-grid" },
+    field("Time column", columns[0]),
+    field("Track column", columns[1]),
+    field("Positions", position),
+    azimuth,
+    html("div", { class: "triple" }, placeFields),
+    noise.map(({ element }) => element),
+    truth.element,
+  );
+  const faults = html(
+    "details",
+    {},
+    html("summary", {}, "Units and faults"),
+    html(
+      "div",
+      { class: "form-grid" },
+      field("Unit of time", choices.time_unit),
+      field("Plots at equal times", choices.duplicates),
+      gap.element,
+      html("div", { class: "field" }, html("span", { class: "label" }, "Order"), sort),
+    ),
+  );
   const element = group(
     "Recording",
     drop,
     input,
-    html("label", { class: "field" }, html("span", { class: "label" }, "File"), chosen),
+    field("File", chosen),
     problem,
-    known,
-    html(
-      "div",
-      { class: "form-grid" },
-      fields.map(([, field]) => field.element),
-      sigma.element,
-    ),
+    form,
+    faults,
   );
+  // Numbers of questions, of which the last one counts.
+  let asked = 0;
 
-  async function setColumn(key, text) {
-    store.set({ columns: { ...store.now.columns, [key]: text } });
-    // With another column it may be read now.
-    if (store.now.uploaded?.problem) await upload(store.now.uploaded.name, store.now.uploaded.text);
+  /** Say something else of the recording, and read it again. */
+  function put(change) {
+    const { recording, readings } = store.now;
+    if (!recording) return;
+    store.set({ readings: { ...readings, [recording]: { ...readingOf(store.now), ...change } } });
+    look();
+  }
+
+  function putNoise(k, value) {
+    const { position: kind, noise: known } = readingOf(store.now);
+    put({ noise: { ...known, [POSITIONS[kind].noise[k][0]]: value } });
+  }
+
+  function choose(name) {
+    say("");
+    store.set({ recording: name || null, described: null, tracked: null });
+    if (name) look();
+  }
+
+  /** Ask what is in the recording, and let it be tracked if it can be read. */
+  async function look() {
+    const name = store.now.recording;
+    await ask("recording", { name, ...argumentsOf(store.now) });
+  }
+
+  async function ask(command, args) {
+    const number = (asked += 1);
+    try {
+      const described = await socket.send(command, args);
+      if (number !== asked) return;
+      store.set({ described, ...(described.problem ? { tracked: null } : {}) });
+      if (!described.problem) taken();
+    } catch (error) {
+      if (number !== asked) return;
+      const described = { name: args.name, columns: [], problem: error.message };
+      store.set({ described, tracked: null });
+    }
   }
 
   async function take(file) {
@@ -87,23 +169,15 @@ export function recordingForm({ store, socket, say }, taken) {
       );
       return;
     }
-    store.set({ columns: { time: "", id: "", axes: "", truth: "" } });
-    await upload(file.name, text);
-  }
-
-  async function upload(name, text) {
-    try {
-      const { sigma: _, ...columns } = columnsOf(store.now);
-      const found = await socket.send("upload", { name, text, ...columns });
-      store.set({
-        uploaded: { ...found, text },
-        uploads: [...new Set([...store.now.uploads, found.name])],
-        recording: found.name,
-      });
-      if (!found.problem) taken();
-    } catch (error) {
-      say(error.message, "error");
-    }
+    const { uploads, readings } = store.now;
+    store.set({
+      recording: file.name,
+      described: null,
+      tracked: null,
+      uploads: [...new Set([...uploads, file.name])],
+      readings: { ...readings, [file.name]: NOTHING },
+    });
+    await ask("upload", { name: file.name, text });
   }
 
   function dragged(event) {
@@ -121,18 +195,68 @@ export function recordingForm({ store, socket, say }, taken) {
     );
     chosen.value = names.includes(recording) ? recording : "";
   });
-  store.follow(["columns", "sigma"], ({ columns, sigma: given }) => {
-    for (const [key, field] of fields) field.show(columns[key]);
-    sigma.show(given);
+  store.follow(["recording", "readings", "described"], (now) => {
+    const reading = readingOf(now);
+    const { recording, described } = now;
+    form.hidden = faults.hidden = !recording;
+    if (!recording) return;
+    const { found } = described ?? {};
+    const said = [reading.time, reading.id, ...reading.places].filter((name) => name !== "");
+    const names = [...new Set([...(described?.columns ?? []), ...said])];
+    const offer = (list, usual, value) => {
+      list.replaceChildren(
+        html("option", { value: "" }, usual),
+        ...names.map((name) => html("option", { value: name }, name)),
+      );
+      list.value = value;
+    };
+    const byName = (name) => (name ? `by name: ${name}` : "by name");
+    offer(columns[0], byName(found?.time), reading.time);
+    offer(columns[1], "one track", reading.id);
+    position.value = reading.position;
+    const kind = POSITIONS[reading.position];
+    kind.places.forEach((name, k) => {
+      const usual = reading.position === "axes" ? byName(found?.places[k]) : "choose";
+      offer(places[k], k === 2 && !found?.places[2] ? "none" : usual, reading.places[k]);
+      placeFields[k].firstChild.textContent = name;
+    });
+    noise.forEach(({ element: each, name, show, input: box }, k) => {
+      const known = kind.noise[k];
+      each.hidden = !known || (k === 2 && reading.places[2] === "");
+      if (!known) return;
+      name(known[1], known[2], "Standard deviation of the plots; estimated from them if it is empty");
+      const estimated = described?.noise?.[k]?.error ? shown(described.noise[k].sigma, 3) : null;
+      box.placeholder = estimated ? `≈ ${estimated}` : "estimated";
+      show(reading.noise[known[0]] ?? null);
+    });
+    azimuth.hidden = reading.position !== "polar";
+    truth.show(reading.truth);
+    for (const [key, list] of Object.entries(choices)) list.value = reading[key];
+    gap.show(reading.max_gap);
+    sort.firstChild.checked = reading.sort;
   });
-  store.follow(["uploaded"], ({ uploaded }) => {
-    problem.hidden = !uploaded?.problem;
-    problem.textContent = uploaded?.problem
-      ? `${uploaded.problem}. Name the columns below if others are meant.`
-      : "";
-    known.hidden = !uploaded;
-    known.textContent = uploaded ? `Columns: ${uploaded.columns.join(", ")}` : "";
+  store.follow(["described"], ({ described }) => {
+    problem.hidden = !described?.problem;
+    problem.replaceChildren(...(described?.problem ? withRemedies(described.problem, put) : []));
+  });
+  // After a reload the recording is read again when it is looked at.
+  store.follow(["view", "hello"], ({ view, hello, recording, described }) => {
+    if (view === "data" && hello && recording && !described) look();
   });
 
-  return { element, dragged };
+  return { element, dragged, put };
+}
+
+/** A message about a recording, and buttons that say of it what the message proposes. */
+export function withRemedies(text, put) {
+  const [rest, found] = remedies(text);
+  const sentence = html("span", {}, `${inFields(rest).replace(/[.]$/, "")}.`);
+  const buttons = found.map(([label, change]) =>
+    html("button", { type: "button", onclick: () => put(change) }, label),
+  );
+  return buttons.length ? [sentence, html("span", { class: "actions" }, buttons)] : [sentence];
+}
+
+function field(label, list) {
+  return html("label", { class: "field" }, html("span", { class: "label" }, label), list);
 }

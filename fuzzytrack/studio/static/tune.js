@@ -1,5 +1,6 @@
 /* The pane that tunes the numbers of a tracker, on the recording or on the scenario. */
 
+import { argumentsOf } from "./columns.js";
 import { choice, html } from "./elements.js";
 import { action, group, numberField, textField } from "./fields.js";
 import { jobBar } from "./jobbar.js";
@@ -7,7 +8,6 @@ import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import { even, shown, withPlaces } from "./numbers.js";
 import { download } from "./pictures.js";
-import { columnsOf } from "./recording.js";
 
 export const title = "Tune";
 
@@ -62,7 +62,7 @@ export function mount(element, app) {
   function asked() {
     const { tuning, tuneOn, recording, seed } = store.now;
     const { free: numbers, ...rest } = tuning;
-    const place = tuneOn === "recording" ? { on: recording, ...columnsOf(store.now) } : {};
+    const place = tuneOn === "recording" ? { on: recording, ...argumentsOf(store.now) } : {};
     return { ...place, ...rest, free: numbers || null, seed };
   }
 
