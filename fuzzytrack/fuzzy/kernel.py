@@ -39,7 +39,8 @@ def infer_function(system: FuzzySystem) -> Infer:
     -------
     callable
         ``infer((x1, ..., xm)) -> (y1, ..., yn)``, inputs and outputs in the order of the rule
-        base; floats, not NaN. Outputs are NaN where no rule fires and there is no default.
+        base; floats, not NaN. Outputs are NaN where no rule fires and there is no default. Its
+        attribute ``source`` is its text.
 
     Raises
     ------
@@ -74,9 +75,12 @@ class _Writer:
     def function(self) -> Infer:
         outputs = "".join(f"y{k}, " for k in range(len(self.rules.outputs)))
         body = "\n    ".join([*self.lines, f"return ({outputs})"])
+        source = f"def infer(x):\n    {body}\n"
         namespace = dict(self.constants)
-        exec(compile(f"def infer(x):\n    {body}\n", "<rule base>", "exec"), namespace)
+        exec(compile(source, "<rule base>", "exec"), namespace)
         infer: Infer = namespace["infer"]
+        # There is no file from which it could be read again.
+        vars(infer)["source"] = source
         return infer
 
     def constant(self, name: str, values: np.ndarray[Any, np.dtype[np.float64]]) -> None:

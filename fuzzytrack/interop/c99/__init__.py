@@ -1,0 +1,1 @@
+"""Schedulers, rule bases and trackers as C99 source code."""
