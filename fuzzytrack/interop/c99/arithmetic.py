@@ -164,7 +164,7 @@ INLINE TYPE NAME_modulo(TYPE x, TYPE y)
     for (k = 0; k < 2200 && part <= rest * HALF; ++k) {
         part = part + part;
     }
-    for (; k >= 0; --k) {
+    for (; k >= 0; k -= 1) {
         rest = rest >= part ? rest - part : rest;
         part = part * HALF;
     }
@@ -239,13 +239,13 @@ INLINE double NAME_sqrt(double x)
         exponent = 1;
         for (k = 0; k < 52 && digits < UINT64_C(0x10000000000000); ++k) {
             digits <<= 1;
-            --exponent;
+            exponent -= 1;
         }
     }
     /* x = digits * 2^(exponent - 1075), with an even power of 2. */
     if ((exponent & 1) == 0) {
         digits <<= 1;
-        --exponent;
+        exponent -= 1;
     }
     for (k = 0; k < 54; ++k) {
         rest = (rest << 2) | (k < 27 ? (digits >> (52 - 2 * k)) & 3u : 0u);
@@ -420,15 +420,15 @@ INLINE float NAME_sqrt(float x)
         exponent = 1;
         for (k = 0; k < 23 && digits < UINT32_C(0x800000); ++k) {
             digits <<= 1;
-            --exponent;
+            exponent -= 1;
         }
     }
     /* x = digits * 2^(exponent - 150), with an even power of 2. */
     digits <<= 1;
-    --exponent;
+    exponent -= 1;
     if ((exponent & 1) != 0) {
         digits <<= 1;
-        --exponent;
+        exponent -= 1;
     }
     for (k = 0; k < 25; ++k) {
         rest = (rest << 2) | (k < 13 ? (digits >> (24 - 2 * k)) & 3u : 0u);

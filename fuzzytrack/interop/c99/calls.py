@@ -6,7 +6,8 @@ import ast
 import builtins
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from types import FunctionType
 from typing import Any
 
 from fuzzytrack.interop.c99.expressions import ExpressionWriter, describe
@@ -70,7 +71,7 @@ class CallWriter(ExpressionWriter):
             return self.refuse(node, "asks for numbers of its own without a constant count")
         self.temporaries += 1
         name = f"own_{self.temporaries}" if self.temporaries > 1 else "own_numbers"
-        zero = self.program.literal(self, node, 0.0).text
+        zero = self.program.literal(self.definition, node, 0.0).text
         self.statement(f"{self.program.number} {name}[{max(count.value, 1)}] = {{{zero}}};")
         return Space(name, count.value)
 
@@ -92,7 +93,11 @@ class CallWriter(ExpressionWriter):
                 return self.refuse(node, f"calls {function.__name__}, which takes **{name}")
             else:
                 given.append(bound.arguments.get(name, Known(parameter.default)))
-        return self.program.call(self, node, function, given)
+        return self.called(node, function, given)
+
+    def called(self, node: ast.Call, function: FunctionType, given: Sequence[Value]) -> Value:
+        """Value of a call of another function in C."""
+        raise NotImplementedError
 
     # ------------------------------------------------------------ Python's own functions
 
@@ -201,7 +206,7 @@ class CallWriter(ExpressionWriter):
         if found is not None:
             return found
         value = self.held(self.number(node, x))
-        half = self.program.literal(self, node, 0.5)
+        half = self.program.literal(self.definition, node, 0.5)
         below = self.held(self.helper("floor", WHOLE, value))
         self.cost("conversions")
         self.cost("comparisons", 2)
@@ -254,7 +259,7 @@ class CallWriter(ExpressionWriter):
         self.cost("comparisons", 2)
         if name == "isnan":
             return Scalar(f"{held} != {held}", TRUTH, EQUAL)
-        infinity = self.program.literal(self, node, math.inf).text
+        infinity = self.program.literal(self.definition, node, math.inf).text
         if name == "isinf":
             return Scalar(f"({held} == {infinity} || {held} == -{infinity})", TRUTH)
         return Scalar(f"({held} < {infinity} && {held} > -{infinity})", TRUTH)

@@ -7,11 +7,12 @@ import math
 import operator
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
 from fuzzytrack.interop.c99.blocks import Assignment, Block, Line, Nest, worst
+from fuzzytrack.interop.c99.program import Program
 from fuzzytrack.interop.c99.python_source import Definition, plain_function
 from fuzzytrack.interop.c99.values import (
     ATOM,
@@ -39,9 +40,6 @@ from fuzzytrack.interop.c99.values import (
     joined,
     scalar_kind,
 )
-
-if TYPE_CHECKING:
-    from fuzzytrack.interop.c99.program import Program
 
 __all__ = ["ExpressionWriter"]
 
@@ -152,8 +150,8 @@ class ExpressionWriter:
             return whole_constant(whole)
         number = float(value.value)
         if value.name and math.isfinite(number):
-            return Scalar(self.program.constant(self, node, value.name, number), NUMBER)
-        return self.program.literal(self, node, number)
+            return Scalar(self.program.constant(self.definition, node, value.name, number), NUMBER)
+        return self.program.literal(self.definition, node, number)
 
     def number(self, node: ast.AST, value: Value) -> Scalar:
         """A value as a floating-point number in C."""
@@ -187,7 +185,7 @@ class ExpressionWriter:
         if value.kind == TRUTH:
             return value
         self.cost("comparisons")
-        zero = "0" if value.kind == WHOLE else self.program.literal(self, node, 0.0).text
+        zero = "0" if value.kind == WHOLE else self.program.literal(self.definition, node, 0.0).text
         return Scalar(f"{inside(value, EQUAL)} != {zero}", TRUTH, EQUAL)
 
     def row(self, node: ast.AST, value: Value) -> Row:
@@ -593,7 +591,7 @@ class ExpressionWriter:
         place = self.place(node, index, len(items))
         numbers = [item.value for item in items if isinstance(item, Known)]
         if isinstance(owner, Known) and {*map(scalar_kind, numbers)} == {NUMBER}:
-            table = self.program.table(self, node, owner.name or "table", numbers)
+            table = self.program.table(self.definition, node, owner.name or "table", numbers)
             return Scalar(f"{table}[{place}]", NUMBER, POSTFIX)
         form = form_of(owner)
         if isinstance(owner, Row) and set(form) == {NUMBER}:
@@ -616,7 +614,7 @@ class ExpressionWriter:
         numbers = [float(x) for x in array.ravel()]
         if isinstance(flat_place, Known):
             return Known(numbers[flat_place.value])
-        table = self.program.table(self, node, owner.name or "table", numbers)
+        table = self.program.table(self.definition, node, owner.name or "table", numbers)
         return Scalar(f"{table}[{self.scalar(node, flat_place).text}]", NUMBER, POSTFIX)
 
     def place(self, node: ast.AST, index: Value, length: int) -> str:
@@ -660,7 +658,9 @@ class ExpressionWriter:
         self.cost(name)
         own = name in ("sqrt", "exp", "log", "pow")
         texts = ", ".join(argument.text for argument in arguments)
-        function = self.program.helper(name) if own else self.program.library(self, node, name)
+        function = (
+            self.program.helper(name) if own else self.program.library(self.definition, node, name)
+        )
         return Scalar(f"{function}({texts})", NUMBER, POSTFIX)
 
     def statement(self, text: str) -> None:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from itertools import count
-from typing import TYPE_CHECKING, NoReturn
+from types import FunctionType
+from typing import NoReturn
 
-from fuzzytrack.interop.c99.blocks import Assignment, Block, Costs, Nest, worst
+from fuzzytrack.interop.c99.blocks import Assignment, Block, Nest, worst
 from fuzzytrack.interop.c99.calls import CallWriter
 from fuzzytrack.interop.c99.expressions import describe, wording
-from fuzzytrack.interop.c99.python_source import Definition
+from fuzzytrack.interop.c99.program import Program, Written
+from fuzzytrack.interop.c99.python_source import Definition, definition_of
 from fuzzytrack.interop.c99.values import (
     NUMBER,
+    POSTFIX,
     TRUTH,
     WHOLE,
     Fixed,
@@ -28,10 +30,7 @@ from fuzzytrack.interop.c99.values import (
     joined,
 )
 
-if TYPE_CHECKING:
-    from fuzzytrack.interop.c99.program import Program
-
-__all__ = ["FunctionWriter", "Written"]
+__all__ = ["FunctionWriter", "written_function"]
 
 _LONGEST_UNROLLED = 4
 _LARGEST_COUNT = 2**31 - 2
@@ -48,33 +47,6 @@ _RESERVED = frozenset(
 
 class _Again(Exception):  # noqa: N818 - not an error: a form was found that is wider
     """A variable or a result has another form than was thought; write the function again."""
-
-
-@dataclass(frozen=True)
-class Written:
-    """A function in C.
-
-    Attributes
-    ----------
-    name : str
-    text : str
-        Its definition.
-    result : Form
-        Fixed(None) for none.
-    used : tuple of bool
-        For each parameter in C, whether it is there; those that nothing reads are not.
-    writes : tuple of bool
-        For each parameter in C, whether the numbers in memory to which it points are changed.
-    costs : Counter
-        Operations of a call.
-    """
-
-    name: str
-    text: str
-    result: Form
-    used: tuple[bool, ...]
-    writes: tuple[bool, ...]
-    costs: Costs
 
 
 class FunctionWriter(CallWriter):
@@ -383,6 +355,55 @@ class FunctionWriter(CallWriter):
         finally:
             self.block = outer
 
+    # ------------------------------------------------------------ other functions
+
+    def called(self, node: ast.Call, function: FunctionType, given: Sequence[Value]) -> Value:
+        """Value of a call, with the function written first if it is new."""
+        forms = tuple(form_of(value, passed=True) for value in given)
+        if any(function is other for other in self.program.being_written):
+            self.refuse(node, f"calls {function.__name__}, which calls itself")
+        written = written_function(self.program, function, forms)
+        texts, k = [], 0
+        for value, form in zip(given, forms, strict=True):
+            if isinstance(form, Fixed) or (
+                isinstance(form, tuple) and not self.program.struct(form)
+            ):
+                continue
+            if written.writes[k]:
+                # What is computed before a call must be computed before it in C, too.
+                if self.whole_call is not node:
+                    self.refuse(node, "changes numbers in memory in the midst of a statement")
+                assert isinstance(value, Space)
+                self.changed.add(value.text)
+            if written.used[k]:
+                texts.append(self._argument(node, value, form))
+            k += 1
+        self.block.costs.update(written.costs)
+        self.cost("calls")
+        return self._result_of(written, f"{written.name}({', '.join(texts)})")
+
+    def _argument(self, node: ast.Call, value: Value, form: Form) -> str:
+        if isinstance(value, Space):
+            return value.text
+        if isinstance(form, tuple):
+            return self.structure(node, value, form)
+        return self.scalar(node, self.converted(node, value, form)).text
+
+    def _result_of(self, written: Written, call: str) -> Value:
+        form, changes = written.result, any(written.writes)
+        if not self.program.has_result(form):
+            if changes:
+                self.statement(f"{call};")
+            return self.program.members("", form) if isinstance(form, tuple) else Known(form.value)
+        if not isinstance(form, tuple) and not changes:
+            return Scalar(call, form, POSTFIX)
+        name = self.temporary(self.program.result_kind(form), call)
+        last = self.block.items[-1]
+        assert isinstance(last, Assignment)
+        # A call that changes numbers in memory stays, even if nothing reads its result.
+        last.used = changes
+        return self.variable(name, form)
+
     # ------------------------------------------------------------ loops
 
     def _for_statement(self, node: ast.For) -> bool:
@@ -492,6 +513,21 @@ class FunctionWriter(CallWriter):
     def _continue_statement(self, node: ast.Continue) -> bool:
         self.statement("continue;")
         return False
+
+
+def written_function(program: Program, function: FunctionType, forms: tuple[Form, ...]) -> Written:
+    """A function in C for arguments of given forms, which becomes a part of the program."""
+    key = (function, forms)
+    if key not in program.written:
+        definition = definition_of(function)
+        program.being_written.append(function)
+        try:
+            name = program.function_name(definition)
+            program.written[key] = FunctionWriter(program, definition, name, forms).written()
+        finally:
+            program.being_written.pop()
+        program.functions.append(program.written[key].text)
+    return program.written[key]
 
 
 def _new(name: str) -> bool:

@@ -7,16 +7,14 @@ import math
 import re
 import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
 from types import FunctionType
 
 import numpy as np
 
 from fuzzytrack.interop.c99.arithmetic import TYPES, arithmetic
-from fuzzytrack.interop.c99.blocks import Assignment, Block
-from fuzzytrack.interop.c99.calls import CallWriter
-from fuzzytrack.interop.c99.expressions import ExpressionWriter
-from fuzzytrack.interop.c99.function_writer import FunctionWriter, Written
-from fuzzytrack.interop.c99.python_source import Definition, definition_of
+from fuzzytrack.interop.c99.blocks import Block, Costs
+from fuzzytrack.interop.c99.python_source import Definition
 from fuzzytrack.interop.c99.values import (
     NUMBER,
     POSTFIX,
@@ -28,14 +26,12 @@ from fuzzytrack.interop.c99.values import (
     Known,
     Row,
     Scalar,
-    Space,
     Value,
-    form_of,
     leaves,
 )
 from fuzzytrack.kernels.rebuild import rounded, table
 
-__all__ = ["Program"]
+__all__ = ["Program", "Written"]
 
 #: Functions of C's mathematical library that Python's `math` has with the same meaning.
 _LIBRARY = frozenset(
@@ -46,6 +42,33 @@ _LIBRARY = frozenset(
 
 
 _LINE = 100
+
+
+@dataclass(frozen=True)
+class Written:
+    """A function in C.
+
+    Attributes
+    ----------
+    name : str
+    text : str
+        Its definition.
+    result : Form
+        Fixed(None) for none.
+    used : tuple of bool
+        For each parameter in C, whether it is there; those that nothing reads are not.
+    writes : tuple of bool
+        For each parameter in C, whether the numbers in memory to which it points are changed.
+    costs : Counter
+        Operations of a call.
+    """
+
+    name: str
+    text: str
+    result: Form
+    used: tuple[bool, ...]
+    writes: tuple[bool, ...]
+    costs: Costs
 
 
 class Program:
@@ -77,8 +100,9 @@ class Program:
         self.needs: set[str] = set()
         self.functions: list[str] = []
         self._names: set[str] = {name}
-        self._written: dict[tuple[FunctionType, tuple[Form, ...]], Written] = {}
-        self._being_written: list[FunctionType] = []
+        #: Functions by what they are in Python, and the forms of their arguments.
+        self.written: dict[tuple[FunctionType, tuple[Form, ...]], Written] = {}
+        self.being_written: list[FunctionType] = []
 
     # ------------------------------------------------------------ text
 
@@ -157,31 +181,31 @@ class Program:
         text = text if any(c in text for c in ".e") else f"{text}.0"
         return text + ("f" if self.number == "float" else "")
 
-    def _checked(self, writer: ExpressionWriter, node: ast.AST, value: float) -> float:
+    def _checked(self, definition: Definition, node: ast.AST, value: float) -> float:
         if self.number == "float":
             try:
                 rounded(value, np.float32)
             except ValueError:
-                writer.refuse(node, f"works with {value:g}, which float lacks; use double")
+                definition.refuse(node, f"works with {value:g}, which float lacks; use double")
         return value
 
-    def literal(self, writer: ExpressionWriter, node: ast.AST, value: float) -> Scalar:
+    def literal(self, definition: Definition, node: ast.AST, value: float) -> Scalar:
         """A number, written out."""
-        text = self._digits(self._checked(writer, node, value))
+        text = self._digits(self._checked(definition, node, value))
         rank = UNARY if text[0] in "-(" else 0
         return Scalar(text, NUMBER, rank, value, value)
 
-    def constant(self, writer: ExpressionWriter, node: ast.AST, name: str, value: float) -> str:
+    def constant(self, definition: Definition, node: ast.AST, name: str, value: float) -> str:
         """Name of a constant."""
-        return self._constant(name, self._checked(writer, node, value))
+        return self._constant(name, self._checked(definition, node, value))
 
-    def table(self, writer: ExpressionWriter, node: ast.AST, name: str, values: list[float]) -> str:
+    def table(self, definition: Definition, node: ast.AST, name: str, values: list[float]) -> str:
         """Name of an array of constants."""
         if self.number == "float":
             try:
                 table(tuple(values), np.float32)
             except ValueError:
-                writer.refuse(node, "works with numbers that float lacks; use double")
+                definition.refuse(node, "works with numbers that float lacks; use double")
         return self._constant(name, tuple(values))
 
     def _constant(self, name: str, value: float | tuple[float, ...]) -> str:
@@ -256,12 +280,12 @@ class Program:
         self.helpers.add(name)
         return f"{self.name}_{name}"
 
-    def library(self, writer: ExpressionWriter, node: ast.AST, name: str) -> str:
+    def library(self, definition: Definition, node: ast.AST, name: str) -> str:
         """Name of a function of C's mathematical library, if it may be used."""
         if name not in _LIBRARY:
-            writer.refuse(node, f"calls math.{name}, which C99 code is not written for")
+            definition.refuse(node, f"calls math.{name}, which C99 code is not written for")
         if name not in self.libm:
-            writer.refuse(
+            definition.refuse(
                 node,
                 f"calls math.{name}, which C99 has in its mathematical library only (-lm); allow "
                 f"it with libm=({name!r},)",
@@ -269,80 +293,8 @@ class Program:
         self.needs.add(name)
         return name + ("f" if self.number == "float" else "")
 
-    def call(
-        self, writer: CallWriter, node: ast.Call, function: FunctionType, given: Sequence[Value]
-    ) -> Value:
-        """Value of a call, with the function written first if it is new."""
-        forms = tuple(form_of(value, passed=True) for value in given)
-        if any(function is other for other in self._being_written):
-            writer.refuse(node, f"calls {function.__name__}, which calls itself")
-        written = self.function(function, forms)
-        texts, k = [], 0
-        for value, form in zip(given, forms, strict=True):
-            if isinstance(form, Fixed) or (isinstance(form, tuple) and not self.struct(form)):
-                continue
-            if written.writes[k]:
-                assert isinstance(value, Space)
-                self._allow_change(writer, node, value)
-            if written.used[k]:
-                texts.append(self._argument(writer, node, value, form))
-            k += 1
-        writer.block.costs.update(written.costs)
-        writer.cost("calls")
-        return self._result(writer, written, f"{written.name}({', '.join(texts)})")
-
-    def _allow_change(self, writer: CallWriter, node: ast.Call, value: Space) -> None:
-        """See that what is computed before a call is computed before it in C, too."""
-        assert isinstance(writer, FunctionWriter)
-        if writer.whole_call is not node:
-            writer.refuse(node, "changes numbers in memory in the midst of a statement")
-        writer.changed.add(value.text)
-
-    def _argument(self, writer: CallWriter, node: ast.Call, value: Value, form: Form) -> str:
-        if isinstance(value, Space):
-            return value.text
-        if isinstance(form, tuple):
-            return writer.structure(node, value, form)
-        return writer.scalar(node, writer.converted(node, value, form)).text
-
-    def _result(self, writer: CallWriter, written: Written, call: str) -> Value:
-        if not self.has_result(written.result):
-            if any(written.writes):
-                writer.statement(f"{call};")
-            form = written.result
-            return self.members("", form) if isinstance(form, tuple) else Known(form.value)
-        kind = self.result_kind(written.result)
-        if isinstance(written.result, tuple):
-            name = writer.temporary(kind, call)
-            self._keep(writer, written)
-            return self.members(name, written.result)
-        if any(written.writes):
-            name = writer.temporary(kind, call)
-            self._keep(writer, written)
-            return Scalar(name, written.result)
-        return Scalar(call, written.result, POSTFIX)
-
-    def _keep(self, writer: CallWriter, written: Written) -> None:
-        """Let a call that changes numbers in memory stay, even if nothing reads its result."""
-        last = writer.block.items[-1]
-        assert isinstance(last, Assignment)
-        last.used = any(written.writes)
-
-    def function(self, function: FunctionType, forms: tuple[Form, ...]) -> Written:
-        """A function in C for arguments of given forms."""
-        key = (function, forms)
-        if key not in self._written:
-            definition = definition_of(function)
-            self._being_written.append(function)
-            try:
-                name = self._function_name(definition)
-                self._written[key] = FunctionWriter(self, definition, name, forms).written()
-            finally:
-                self._being_written.pop()
-            self.functions.append(self._written[key].text)
-        return self._written[key]
-
-    def _function_name(self, definition: Definition) -> str:
+    def function_name(self, definition: Definition) -> str:
+        """A name in C for a function."""
         base = name = f"{self.name}_{_ascii(definition.name).strip('_')}"
         count = 1
         while name in self._names:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from fuzzytrack.interop.c99.function_writer import written_function
 from fuzzytrack.interop.c99.program import Program
 from fuzzytrack.interop.c99.python_source import definition_of, plain_function
 from fuzzytrack.interop.c99.values import NUMBER, Form, leaves
@@ -124,7 +125,7 @@ def translated(
     if len(forms) != len(names):
         raise ValueError(f"arguments: {len(forms)} for a function that takes {len(names)}")
     program = Program(name, number, libm)
-    written = program.function(plain, forms)
+    written = written_function(program, plain, forms)
     heads, before, given, takes = [], [], [], []
     for k, (argument, form) in enumerate(zip(names, forms, strict=True)):
         kinds = list(leaves(form))
