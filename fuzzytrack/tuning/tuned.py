@@ -111,12 +111,21 @@ class Tuned:
 
     @property
     def worth_it(self) -> bool:
-        """Whether it is better than the start on data that it was not tuned on, significantly."""
-        return self.rows[0].is_worse
+        """Whether it is better than the start on data that it was not tuned on, significantly.
+
+        Not if it is the start: then the search on all data has found nothing better, whatever those
+        on the folds have found.
+        """
+        return self.rows[0].is_worse and self.numbers != self.start
 
     @property
     def verdict(self) -> str:
         """In words: whether tuning is worth it, and what is as good."""
+        if self.numbers == self.start:
+            return (
+                "not worth it: the search on all data found nothing better than the start, which "
+                "stays; give more trials"
+            )
         if not self.worth_it:
             return f"not worth it: held-out change against the start {self.rows[0].change_text}"
         found = f"worth it: held-out change against the start {self.rows[0].change_text}"

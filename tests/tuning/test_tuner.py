@@ -52,6 +52,11 @@ def test_fixed_gains_come_near_those_of_the_steady_kalman_filter():
     assert tuned.held_out == pytest.approx(kalman.held_out, rel=0.1)
     assert found.worth_it == (start.change[2] < 0)
     assert found.units == "tracks"
+    # The start itself is not worth it, though the searches on the folds have found better numbers.
+    same = replace(found, numbers=found.start)
+    assert same.rows[0].is_worse
+    assert not same.worth_it
+    assert same.verdict.startswith("not worth it: the search on all data found nothing better")
 
 
 def test_what_is_tuned_already_is_not_worth_it():
