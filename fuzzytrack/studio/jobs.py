@@ -78,6 +78,10 @@ class Job:
         """Seconds since it last made progress."""
         return time.monotonic() - self._heard
 
+    def begin(self) -> None:
+        """Tell that it runs, before there is progress, which may take a while."""
+        self._report(self, False)
+
     def progress(self, share: float) -> None:
         """Take in how much is done; called by the work.
 
@@ -214,6 +218,7 @@ class Jobs:
     def _do(self, job: Job, work: Work, pool: ProcessPoolExecutor) -> None:
         """Do the work; runs in a thread of its own."""
         _thread.notes = job.notes
+        job.begin()
         try:
             job.finish(work(job, pool))
         except CancelledJobError:

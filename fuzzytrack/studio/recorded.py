@@ -19,6 +19,7 @@ from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.jobs import noted_warnings
 from fuzzytrack.studio.reading_arguments import check_truth
 from fuzzytrack.studio.uploads import check_plots
+from fuzzytrack.testbed.marks import best_of
 from fuzzytrack.testbed.recorded_comparison import compare_used
 from fuzzytrack.testbed.recorded_scores import RecordedComparison, RecordedScore
 from fuzzytrack.trackers.base import Tracker
@@ -196,7 +197,7 @@ def _comparison_as_json(found: RecordedComparison) -> dict[str, Any]:
         ("rms", "RMS innovation", "m"),
         ("change", "Change", "%"),
         ("log_likelihood", "Log-likelihood", "nats"),
-        ("outside", "Beyond 3 σ", "%"),
+        ("outside", "Beyond 3\N{NO-BREAK SPACE}σ", "%"),
         ("whiteness", "Correlation", ""),
     ]
     if found.has_truth:
@@ -214,6 +215,7 @@ def _comparison_as_json(found: RecordedComparison) -> dict[str, Any]:
         "scored": found.scored,
         "before": found.before,
         "measured_rmse": found.measured_rmse,
+        "expected_correlation": found.scores[best_of(found.errors) or 0].whiteness.reach,
         "expected_outside": 100 * found.expected_outside,
     }
 

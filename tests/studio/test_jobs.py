@@ -46,9 +46,11 @@ def test_a_job_tells_how_far_it_is_and_what_it_found(found, monkeypatch):
 
     found.start("run", 8, work, reports)
     assert reports.end()["results"] == {"x": 2}
-    assert [each["done"] for each in reports.told] == [2, 2, 4, 8]
-    assert [each["results"] for each in reports.told] == [None, {"x": 1}, None, {"x": 2}]
-    assert reports.told[0]["seconds_left"] >= 0
+    # That it runs is told before there is progress.
+    assert [each["done"] for each in reports.told] == [0, 2, 2, 4, 8]
+    assert [each["results"] for each in reports.told] == [None, None, {"x": 1}, None, {"x": 2}]
+    assert reports.told[0]["seconds_left"] is None
+    assert reports.told[1]["seconds_left"] >= 0
     last = reports.told[-1]
     assert (last["state"], last["seconds_left"], last["error"]) == ("done", None, None)
 

@@ -82,9 +82,10 @@ export function argumentsOf(now) {
 export function inFields(text) {
   return text.replace(ARGUMENT, (all, first, quoted, value) => {
     const name = first ?? quoted;
-    const label = LABELS[name] ?? (first ? first : `--${name.replaceAll("_", "-")} of the command line`);
-    const shownLabel = first ? label : `“${label}”`;
-    return value === undefined ? shownLabel : `${shownLabel} (${value})`;
+    const label = LABELS[name];
+    if (first) return label ?? first;
+    const said = label ? `“${label}”` : `--${name.replaceAll("_", "-")} of the command line`;
+    return value === undefined ? said : `${said} (${value})`;
   });
 }
 

@@ -26,6 +26,9 @@ const HELP = {
   whiteness: "Correlation of successive innovations; 0 for a filter that fits the target",
 };
 
+// Decimal places of columns whose values are of one size.
+const PLACES = { change: 1, outside: 1, log_likelihood: 2, whiteness: 3 };
+
 export function mount(element, app) {
   const { store, socket, say } = app;
   const recording = recordingForm(app, run);
@@ -203,7 +206,8 @@ function noiseInWords(noise) {
   return `σ ${[...new Set(each)].join(", ")}`;
 }
 
-function comparisonTable({ comparison: { columns, rows } }, hidden, toggle) {
+function comparisonTable({ comparison }, hidden, toggle) {
+  const { columns, rows } = comparison;
   return html(
     "table",
     { class: "result-table" },
@@ -241,6 +245,21 @@ function comparisonTable({ comparison: { columns, rows } }, hidden, toggle) {
         ),
       ),
     ),
+    html("tfoot", {}, expectedRow(comparison)),
+  );
+}
+
+/** What a filter would have that fits the targets, where that is known. */
+function expectedRow({ columns, expected_outside: outside, expected_correlation: correlation }) {
+  const known = {
+    outside: `${withPlaces(outside, PLACES.outside)}`,
+    whiteness: `± ${shown(correlation, 2)}`,
+  };
+  return html(
+    "tr",
+    {},
+    html("th", { scope: "row" }, "expected of a filter that fits"),
+    ...columns.map(([key]) => html("td", {}, known[key] ?? "")),
   );
 }
 
@@ -252,7 +271,7 @@ function cellOf(row, key) {
   return html(
     "td",
     { title: `${value}${interval}`, "data-key": key, "data-value": value },
-    key === "change" || key === "outside" ? withPlaces(value, 1) : even(value, 4),
+    PLACES[key] === undefined ? even(value, 4) : withPlaces(value, PLACES[key]),
     Number.isFinite(low) ? html("small", { class: "se" }, `${shown(low, 3)} to ${shown(high, 3)}`) : null,
   );
 }

@@ -33,9 +33,16 @@ export function jobBar({ store, socket, say }, kind, label, start) {
   return { element: html("div", { class: "progress" }, bar, words), cancel, words };
 }
 
+// Until there is progress; a tuning compiles its trackers before.
+const STARTING = {
+  run: "Starting…",
+  tune: "Starting: the trackers are compiled first, which may take a minute.",
+};
+
 /** A job in words. */
 function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
   const count = kind === "run" ? `${done} of ${of} runs` : `${Math.round((100 * done) / of)} %`;
+  if (state === "running" && !done) return STARTING[kind];
   if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
   if (state === "cancelled") return `Canceled after ${count}.`;
   if (state === "failed") return `Failed: ${error}`;

@@ -13,7 +13,7 @@ const CHOICES = {
     ["east", "east"],
   ],
   time_unit: [
-    ["", "by name or size"],
+    ["", "automatic"],
     ["s", "s"],
     ["ms", "ms"],
     ["us", "µs"],
@@ -134,7 +134,9 @@ export function recordingForm(app, taken) {
   function choose(name) {
     say("");
     store.set({ recording: name || null, described: null, tracked: null });
-    if (name) look();
+    if (!name) return;
+    store.set({ tuneOn: "recording" });
+    look();
   }
 
   /** Ask what is in the recording, and let it be tracked if it can be read. */
@@ -172,6 +174,7 @@ export function recordingForm(app, taken) {
     const { uploads, readings } = store.now;
     store.set({
       recording: file.name,
+      tuneOn: "recording",
       described: null,
       tracked: null,
       uploads: [...new Set([...uploads, file.name])],
@@ -219,6 +222,7 @@ export function recordingForm(app, taken) {
       const usual = reading.position === "axes" ? byName(found?.places[k]) : "choose";
       offer(places[k], k === 2 && !found?.places[2] ? "none" : usual, reading.places[k]);
       placeFields[k].firstChild.textContent = name;
+      places[k].setAttribute("aria-label", name);
     });
     noise.forEach(({ element: each, name, show, input: box }, k) => {
       const known = kind.noise[k];
@@ -258,5 +262,6 @@ export function withRemedies(text, put) {
 }
 
 function field(label, list) {
+  list.setAttribute("aria-label", label);
   return html("label", { class: "field" }, html("span", { class: "label" }, label), list);
 }

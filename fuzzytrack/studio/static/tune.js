@@ -17,13 +17,26 @@ export function mount(element, app) {
   const tracker = textField("Tracker", "editor, a rule base, or kalman-cv:sigma_v=2", (text) =>
     put({ tracker: text }),
   );
-  const free = textField("Numbers to tune", "all; or e.g. outputs, E.ns", (text) => put({ free: text }));
+  const free = textField(
+    "Numbers to tune",
+    "all; or e.g. outputs, E.ns",
+    (text) => put({ free: text }),
+    "Of a rule base: outputs, sets, normalization, the name of a variable (stiffness), a set (E.ns) or a setting; of other trackers: their parameters",
+  );
   const whole = { least: 1, whole: true };
-  const trials = numberField("Trials", "", (value) => put({ trials: value }), whole);
-  const folds = numberField("Folds", "", (value) => put({ folds: value }), { least: 2, whole: true });
+  const trials = numberField("Trials", "", (value) => put({ trials: value }), {
+    ...whole,
+    title: "Sets of numbers that are tried, in each fold",
+  });
+  const folds = numberField("Folds", "", (value) => put({ folds: value }), {
+    least: 2,
+    whole: true,
+    title: "Parts of the data; each is judged with numbers that were tuned on the others",
+  });
+  const what = html("p", { class: "muted" });
   const runs = numberField("Runs", "", (value) => put({ runs: value }), {
     ...whole,
-    title: "Runs of the scenario",
+    title: "Runs of the scenario that are simulated",
   });
   const start = action("Tune", run, { class: "primary" });
   const { element: progress, cancel } = jobBar(app, "tune", "Progress of tuning", start);
@@ -46,7 +59,7 @@ export function mount(element, app) {
       found,
       group(
         "What",
-        html("div", { class: "field" }, html("span", { class: "label" }, "On"), on.element),
+        html("div", { class: "field" }, html("span", { class: "label" }, "On"), on.element, what),
         tracker.element,
         free.element,
         html("div", { class: "form-grid" }, trials.element, folds.element, runs.element),
@@ -61,8 +74,9 @@ export function mount(element, app) {
   /** What the command is told. */
   function asked() {
     const { tuning, tuneOn, recording, seed } = store.now;
-    const { free: numbers, ...rest } = tuning;
-    const place = tuneOn === "recording" ? { on: recording, ...argumentsOf(store.now) } : {};
+    const { free: numbers, runs: simulated, ...rest } = tuning;
+    const recorded = tuneOn === "recording";
+    const place = recorded ? { on: recording, ...argumentsOf(store.now) } : { runs: simulated };
     return { ...place, ...rest, free: numbers || null, seed };
   }
 
@@ -99,15 +113,18 @@ export function mount(element, app) {
     app.show({ tab: "table" });
   }
 
-  store.follow(["tuneOn"], ({ tuneOn }) =>
+  store.follow(["tuneOn", "recording", "scenario"], ({ tuneOn, recording, scenario }) => {
     on.show(
       [
         ["scenario", "the scenario"],
         ["recording", "the recording"],
       ],
       tuneOn,
-    ),
-  );
+    );
+    runs.element.hidden = tuneOn === "recording";
+    const changed = scenario && !scenario.saved ? " (changed)" : "";
+    what.textContent = tuneOn === "recording" ? (recording ?? "none is chosen") : `${scenario?.name}${changed}`;
+  });
   store.follow(["tuning"], ({ tuning }) => {
     tracker.show(tuning.tracker);
     free.show(tuning.free);
@@ -134,7 +151,7 @@ export function mount(element, app) {
           "Add to the trackers",
         );
     found.replaceChildren(
-      html("p", {}, `${verdict[0].toUpperCase()}${verdict.slice(1)}.`),
+      html("p", {}, `${verdict[0].toUpperCase()}${verdict.slice(1)}.`.replace(/-(?=\d)/g, "−")),
       ...tablesOf(tuned),
       html("div", { class: "actions" }, use),
       ...tuned.notes.map((note) => html("p", { class: "muted" }, note)),
@@ -148,7 +165,8 @@ function tablesOf({ errors, objective, units, numbers, start }) {
   const relative = objective.startsWith("RMS");
   const inWords = (change) => {
     if (change === null) return "";
-    return relative ? `${withPlaces(100 * change, 1)} %` : withPlaces(change, 3);
+    const sign = change > 0 ? "+" : "";
+    return sign + (relative ? `${withPlaces(100 * change, 1)} %` : withPlaces(change, 3));
   };
   return [
     html(
@@ -157,7 +175,7 @@ function tablesOf({ errors, objective, units, numbers, start }) {
       html(
         "caption",
         {},
-        `${objective}, on ${units} that it was not tuned on, and the change to the tuned one`,
+        `${objective}${relative ? " (m)" : ""}, on ${units} that it was not tuned on, and the change to the tuned one`,
       ),
       html(
         "tbody",
