@@ -5,6 +5,7 @@ import runpy
 import shlex
 import sys
 import tomllib
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
@@ -53,9 +54,18 @@ def a_folder_with_plots(tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
 
 
+def find_stone_soup(monkeypatch):
+    """Make it know the plug-in, as it does after an installation with these entry points."""
+    pytest.importorskip("stonesoup", reason="Stone Soup is not installed")
+    plugin = import_module("fuzzytrack.interop.stonesoup")
+    monkeypatch.setitem(sys.modules, "stonesoup.plugins.fuzzytrack", plugin)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 @pytest.mark.usefixtures("a_folder_with_plots")
 def test_python_on_the_page_runs(page, monkeypatch):
+    if page.stem == "stonesoup":
+        find_stone_soup(monkeypatch)
     registries = (*REGISTRIES, *ROLES.values())
     known = {registry: registry.names() for registry in registries}
     rules = ft.load_rulebase("stiffness-damping")

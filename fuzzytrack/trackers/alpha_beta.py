@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
+from fuzzytrack.arrays import Array
 from fuzzytrack.gains.checks import nonnegative_deviation, number
 from fuzzytrack.lanes.layout import Rows
 from fuzzytrack.lanes.program import LaneProgram
@@ -17,6 +20,7 @@ from fuzzytrack.trackers.alpha_beta_step import StepWay, steady_function, step_f
 from fuzzytrack.trackers.base import trackers
 from fuzzytrack.trackers.carried_covariance import CarriedCovariance
 from fuzzytrack.trackers.lane_tracker import LaneTracker, check_missed
+from fuzzytrack.trackers.state import TrackState
 
 __all__ = ["STARTS", "AlphaBetaTracker"]
 
@@ -174,6 +178,25 @@ class AlphaBetaTracker(LaneTracker):
             return math.nan
         own = memory[:-1] if scheduler.uses_retention else memory
         return scheduler.prediction_variance(own, dt)
+
+    def retention_time(self, state: TrackState) -> Array:
+        """Time for which the acceleration of a track lasts, in its next prediction (s).
+
+        Parameters
+        ----------
+        state : TrackState
+            From `start`, `step` or a result.
+
+        Returns
+        -------
+        ndarray
+            Shaped as a plot; infinite unless the scheduler sets it.
+        """
+        rows, n_axes = state.rows, state.rows.n_axes
+        if not self._gains.uses_retention:
+            return np.full(state.shape, math.inf)
+        lanes = state.lanes[rows.memory + rows.n_memory - 1]
+        return np.repeat(lanes, n_axes).reshape(state.shape)
 
     @property
     def _gains(self) -> GainScheduler:

@@ -1,0 +1,47 @@
+"""What predictor, updater and initiator have in common: the tracker, and the state it is in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from stonesoup.base import Base, Property
+
+from fuzzytrack.interop.stonesoup.recursion import Recursion
+
+__all__ = ["GainScheduledComponent"]
+
+
+class GainScheduledComponent(Base):
+    """Component with a tracker of this package.
+
+    Its properties are texts and numbers, so that Stone Soup's YAML writes and reads them.
+
+    Raises
+    ------
+    ValueError, RuleBaseError
+        If the text names no alpha-beta tracker, or the mappings do not fit it.
+    """
+
+    tracker: str = Property(
+        readonly=True,
+        doc="Text that names the tracker, such as ``omega-schedule``, ``my.yaml`` or "
+        "``fixed:alpha=0.5:beta=0.2``.",
+    )
+    position_mapping: Sequence[int] = Property(
+        readonly=True, doc="Place of the position on each axis in the state vector."
+    )
+    velocity_mapping: Sequence[int] = Property(
+        readonly=True, doc="Place of the velocity on each axis."
+    )
+    acceleration_mapping: Sequence[int] = Property(
+        default=None,
+        readonly=True,
+        doc="Place of the acceleration on each axis, for a tracker that has one.",
+    )
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._recursion = Recursion.of(
+            self.tracker, self.position_mapping, self.velocity_mapping, self.acceleration_mapping
+        )
