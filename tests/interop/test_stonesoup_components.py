@@ -15,7 +15,10 @@ from stonesoup.hypothesiser.probability import PDAHypothesiser
 from stonesoup.initiator.simple import MultiMeasurementInitiator, SimpleMeasurementInitiator
 from stonesoup.measures import Mahalanobis
 from stonesoup.models.measurement.linear import LinearGaussian
-from stonesoup.models.measurement.nonlinear import Cartesian2DToBearing, CartesianToBearingRange
+from stonesoup.models.measurement.nonlinear import (
+    Cartesian2DToBearing,
+    CombinedReversibleGaussianMeasurementModel,
+)
 from stonesoup.models.transition.linear import (
     CombinedLinearGaussianTransitionModel,
     ConstantVelocity,
@@ -44,6 +47,7 @@ from fuzzytrack.interop.stonesoup import (
 from fuzzytrack.trackers.catalog import make_tracker
 
 MODEL = linear((0, 2), 4)
+BEARING = Cartesian2DToBearing(4, (0, 2), np.eye(1))
 SPEC = "track-quality"
 
 
@@ -390,10 +394,10 @@ def test_times_are_checked():
     [
         ([1.0, 2.0], None, "neither the detection nor the component has one"),
         ([1.0], linear((0,), 4), "LinearGaussian does not measure the position on every axis"),
-        ([1.0], Cartesian2DToBearing(4, (0, 2), np.eye(1)), "does not measure the position"),
+        ([1.0], BEARING, "does not measure the position"),
         (
-            [0.1, 5.0],
-            CartesianToBearingRange(4, (0, 2), np.eye(2), rotation_offset=[[0.1], [0.0], [0.0]]),
+            [0.1, 0.1],
+            CombinedReversibleGaussianMeasurementModel([BEARING, BEARING]),
             "does not measure the position",
         ),
         ([1.0, 2.0], linear((0, 1), 2), "its state has 2 places"),
