@@ -57,13 +57,10 @@ class Nest:
     heads : list of str
         Text before each block.
     blocks : list of Block
-    loops : bool
-        Whether the blocks are done again and again.
     """
 
     heads: list[str]
     blocks: list[Block]
-    loops: bool = False
 
 
 @dataclass
@@ -137,15 +134,15 @@ class Block:
             Variables that are declared already, such as parameters.
         """
         counts = Counter(each.name for each in self.assignments())
-        return self._lines(counts, set(taken), empty, inside=False)
+        return self._lines(counts, set(taken), empty)
 
     def _lines(
-        self, counts: Counter[str], declared: set[str], empty: dict[str, str], inside: bool
+        self, counts: Counter[str], declared: set[str], empty: dict[str, str]
     ) -> list[str]:
         declared = set(declared)
         ahead = [
             f"{kind} {name} = {empty[kind]};"
-            for name, kind in self._early(counts, declared, inside).items()
+            for name, kind in sorted(self._early(declared).items())
         ]
         lines = list(ahead)
         for item in self.items:
@@ -161,32 +158,23 @@ class Block:
             else:
                 for k, (head, block) in enumerate(zip(item.heads, item.blocks, strict=True)):
                     lines.append(f"{'} ' if k else ''}{head} {{")
-                    inner = block._lines(counts, declared, empty, inside or item.loops)
+                    inner = block._lines(counts, declared, empty)
                     lines += [f"    {line}" for line in inner]
                 lines.append("}")
         return lines
 
-    def _early(self, counts: Counter[str], declared: set[str], inside: bool) -> dict[str, str]:
+    def _early(self, declared: set[str]) -> dict[str, str]:
         """Variables that must be declared at the beginning of this block, with their types."""
         early: dict[str, str] = {}
         seen: set[str] = set()
-        for position, item in enumerate(self.items):
+        for item in self.items:
             if isinstance(item, Assignment):
                 seen.add(item.name)
             elif isinstance(item, Nest):
-                for name, kind in {
-                    a.name: a.kind for b in item.blocks for a in b.assignments()
-                }.items():
-                    if name in declared or name in seen or name in early:
-                        continue
-                    own = [b for b in item.blocks if b._mentions(name)]
-                    elsewhere = any(
-                        _mentions(other, name)
-                        for k, other in enumerate(self.items)
-                        if k != position
-                    ) or any(re.search(rf"\b{name}\b", head) for head in item.heads)
-                    if elsewhere or len(own) > 1 or not own[0]._sets_first(name):
-                        early[name] = kind
+                inner = {a.name: a.kind for block in item.blocks for a in block.assignments()}
+                for name in inner.keys() - declared - seen - early.keys():
+                    if not all(_alone_inside(other, name) for other in self.items):
+                        early[name] = inner[name]
                         declared.add(name)
         return early
 
@@ -200,13 +188,18 @@ class Block:
                 continue
             if isinstance(item, Assignment):
                 return item.name == name and not re.search(rf"\b{name}\b", item.text)
-            if isinstance(item, Nest):
-                own = [b for b in item.blocks if b._mentions(name)]
-                alone = sum(_mentions(other, name) for other in self.items) == 1
-                heads = any(re.search(rf"\b{name}\b", head) for head in item.heads)
-                return alone and len(own) == 1 and not heads and own[0]._sets_first(name)
-            return False
+            # Deeper inside, it is declared there, if nothing else needs it.
+            return all(_alone_inside(other, name) for other in self.items)
         return False
+
+
+def _alone_inside(item: Line | Assignment | Nest, name: str) -> bool:
+    """Whether a statement needs a variable at most inside of its blocks, each of which sets it."""
+    if not isinstance(item, Nest):
+        return not _mentions(item, name)
+    in_heads = any(re.search(rf"\b{name}\b", head) for head in item.heads)
+    own = [block for block in item.blocks if block._mentions(name)]
+    return not in_heads and all(block._sets_first(name) for block in own)
 
 
 def _mentions(item: Line | Assignment | Nest, name: str) -> bool:

@@ -35,6 +35,7 @@ from fuzzytrack.interop.c99.values import (
     Scalar,
     Space,
     Value,
+    Whole,
     constant_tuple,
     form_of,
     joined,
@@ -207,7 +208,7 @@ class ExpressionWriter:
                 )
         elif form == NUMBER:
             return self.number(node, value)
-        elif form == WHOLE:
+        elif form == WHOLE or isinstance(form, Whole):
             return self.whole(node, value)
         elif form == TRUTH:
             found = self.scalar(node, value)
@@ -543,6 +544,10 @@ class ExpressionWriter:
         )
         return Scalar(text, form, CHOICE, min(a.low, b.low), max(a.high, b.high))
 
+    def within_limits(self, name: str, value: Scalar) -> Scalar:
+        """An integer variable with the limits of all values that it gets."""
+        return Scalar(name, WHOLE, ATOM, min(value.low, -_INT64), max(value.high, _INT64))
+
     def _result(self, form: Form) -> tuple[Value, str]:
         """A variable that is assigned to later, and its name."""
         self.temporaries += 1
@@ -563,7 +568,8 @@ class ExpressionWriter:
                 self.block.items.append(Assignment(name, self.program.struct(form), text))
         elif not isinstance(form, Fixed):
             found = self.scalar(node, self.converted(node, value, form))
-            kind = {NUMBER: self.program.number, TRUTH: "bool", WHOLE: "int64_t"}[form]
+            whole = self.c_kind(self.within_limits(name, found)) if form == WHOLE else ""
+            kind = {NUMBER: self.program.number, TRUTH: "bool", WHOLE: whole}[form]
             self.block.items.append(Assignment(name, kind, found.text))
         return value
 
@@ -629,7 +635,7 @@ class ExpressionWriter:
             return Known(int(index.value) % length)
         found = self.whole(node, index)
         if found.low >= 0 and found.high < length:
-            return found
+            return Known(int(found.low)) if found.low == found.high else found
         self.cost("comparisons", 3)
         forced = self.helper("place", WHOLE, found, whole_constant(length))
         return Scalar(forced.text, WHOLE, forced.rank, 0.0, length - 1.0)

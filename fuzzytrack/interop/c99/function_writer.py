@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import math
+import re
 from collections.abc import Callable, Iterator, Sequence
 from itertools import count
 from types import FunctionType
@@ -26,6 +28,7 @@ from fuzzytrack.interop.c99.values import (
     Scalar,
     Space,
     Value,
+    Whole,
     form_of,
     joined,
 )
@@ -33,6 +36,7 @@ from fuzzytrack.interop.c99.values import (
 __all__ = ["FunctionWriter", "written_function"]
 
 _LONGEST_UNROLLED = 4
+_WIDENINGS = 3
 _LARGEST_COUNT = 2**31 - 2
 
 #: Words that a variable in C must not have for a name.
@@ -71,6 +75,8 @@ class FunctionWriter(CallWriter):
         #: Forms of variables, and of the result, as far as they are known.
         self.found: dict[str, Form] = {}
         self.result: Form | None = None
+        #: Limits of integer variables, and how often they were made wider.
+        self.limits: dict[str, tuple[float, float, int]] = {}
         self.changed: set[str] = set()
         self.inside_choice = 0
         #: The call whose value is that of the whole statement.
@@ -150,9 +156,16 @@ class FunctionWriter(CallWriter):
             self.variables[name] = self.program.members(written, form)
             if self.program.struct(form):
                 parameters.append((written, f"{self.program.struct(form)} "))
+        elif isinstance(form, Whole):
+            parameters.append((written, "int32_t "))
+            self.limits[written] = (form.low, form.high, 0)
+            self.variables[name] = Scalar(written, WHOLE, 0, form.low, form.high)
+            form = WHOLE
         else:
             self.variables[name] = Scalar(written, form)
             parameters.append((written, f"{self.scalar_kinds()[form]} "))
+            if form == WHOLE:
+                self.limits[written] = (-math.inf, math.inf, 0)
         self.found.setdefault(written, form)
 
     def scalar_kinds(self) -> dict[str, str]:
@@ -227,7 +240,7 @@ class FunctionWriter(CallWriter):
 
     def _annassign_statement(self, node: ast.AnnAssign) -> bool:
         if node.value is not None:
-            self._bind(node.target, self.value(node.value))
+            self._bind(node.target, self._statement_value(node.value))
         return False
 
     def _augassign_statement(self, node: ast.AugAssign) -> bool:
@@ -265,7 +278,8 @@ class FunctionWriter(CallWriter):
         row = self.row(target, value)
         items = list(row.items)
         names = [part.id for part in ast.walk(target) if isinstance(part, ast.Name)]
-        if not row.whole and any(self.stores.get(name, 2) > 1 for name in names):
+        written = {self.names.get(name, self.c_name(name)) for name in names}
+        if not row.whole and any(written & _words_of(item) for item in items):
             # All are computed before the first one is assigned.
             items = [self._held(target, item) for item in items]
         stars = [k for k, part in enumerate(target.elts) if isinstance(part, ast.Starred)]
@@ -317,16 +331,26 @@ class FunctionWriter(CallWriter):
         if isinstance(wider, Fixed):
             self.variables[name] = value
             return
-        if once and wider == WHOLE:
-            # The limits of an integer are those of its only value.
-            found = self.whole(node, value)
-            self.block.items.append(Assignment(written, self.c_kind(found), found.text))
-            self.variables[name] = Scalar(written, WHOLE, 0, found.low, found.high)
-            return
         self.assign_form(node, written, value, wider)
         self.variables[name] = self.variable(written, wider)
+        if wider == WHOLE:
+            self.variables[name] = self.within_limits(written, self.whole(node, value))
         if once and isinstance(value, Scalar) and wider == NUMBER:
             self.variables[name] = Scalar(written, NUMBER, 0, value.low, value.high)
+
+    def within_limits(self, name: str, value: Scalar) -> Scalar:
+        """An integer variable with the limits of all values that it gets.
+
+        They are made wider until they hold; what grows again and again has none.
+        """
+        low, high, times = self.limits.setdefault(name, (value.low, value.high, 0))
+        if value.low < low or value.high > high:
+            low, high = min(low, value.low), max(high, value.high)
+            if times >= _WIDENINGS:
+                low, high = -math.inf, math.inf
+            self.limits[name] = (low, high, times + 1)
+            raise _Again
+        return Scalar(name, WHOLE, 0, low, high)
 
     def _if_statement(self, node: ast.If) -> bool:
         condition = self.truth(node.test, self.value(node.test))
@@ -492,7 +516,7 @@ class FunctionWriter(CallWriter):
         turns = max(0, -(-(int(highest) - start) // step))
         for operation, done in body.costs.items():
             self.cost(operation, done * turns)
-        self.block.items.append(Nest([f"{head}{turn})"], [body], loops=True))
+        self.block.items.append(Nest([f"{head}{turn})"], [body]))
 
     def _unrolled(self, node: ast.For, items: tuple[Value, ...]) -> None:
         if any(isinstance(each, ast.Break | ast.Continue) for each in ast.walk(node)):
@@ -533,6 +557,13 @@ def written_function(program: Program, function: FunctionType, forms: tuple[Form
 def _new(name: str) -> bool:
     """Whether a name is that of a temporary variable."""
     return name[:1] == "t" and name[1:].isdigit()
+
+
+def _words_of(value: Value) -> set[str]:
+    """Names in the text of a value."""
+    if isinstance(value, Row):
+        return {word for item in value.items for word in _words_of(item)}
+    return set(re.findall(r"\w+", value.text)) if isinstance(value, Scalar) else set()
 
 
 def _signature(head: str, parameters: list[str]) -> list[str]:

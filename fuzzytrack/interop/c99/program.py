@@ -82,9 +82,14 @@ class Program:
         Its type of number.
     libm : collection of str
         Functions of C's mathematical library that it may call.
+    taken : collection of str
+        Names that are used already.
     """
 
-    def __init__(self, name: str, number: str = "double", libm: Sequence[str] = ()) -> None:
+    def __init__(
+        self, name: str, number: str = "double", libm: Sequence[str] = (),
+        taken: Sequence[str] = (),
+    ) -> None:  # fmt: skip
         if not (name.isascii() and name.isidentifier()):
             raise ValueError(f"name must be a name in C (letters, digits, _), got {name!r}")
         if number not in TYPES:
@@ -99,7 +104,7 @@ class Program:
         self.helpers: set[str] = set()
         self.needs: set[str] = set()
         self.functions: list[str] = []
-        self._names: set[str] = {name}
+        self._names: set[str] = {name, *taken}
         #: Functions by what they are in Python, and the forms of their arguments.
         self.written: dict[tuple[FunctionType, tuple[Form, ...]], Written] = {}
         self.being_written: list[FunctionType] = []
@@ -151,10 +156,10 @@ class Program:
     def _constant_text(self, name: str) -> str:
         value = self.constants[name]
         if isinstance(value, float):
-            return f"static const {self.number} {name} = {self._digits(value)};"
+            return f"static const {self.number} {name} = {self.digits(value)};"
         lines, line = [], "   "
         for number in value:
-            piece = f" {self._digits(number)},"
+            piece = f" {self.digits(number)},"
             if len(line) + len(piece) > 100:
                 lines.append(line)
                 line = "   "
@@ -172,7 +177,8 @@ class Program:
 
     # ------------------------------------------------------------ numbers
 
-    def _digits(self, value: float) -> str:
+    def digits(self, value: float) -> str:
+        """A number, written out."""
         if math.isnan(value):
             return f"({self.number})NAN"
         if math.isinf(value):
@@ -191,7 +197,7 @@ class Program:
 
     def literal(self, definition: Definition, node: ast.AST, value: float) -> Scalar:
         """A number, written out."""
-        text = self._digits(self._checked(definition, node, value))
+        text = self.digits(self._checked(definition, node, value))
         rank = UNARY if text[0] in "-(" else 0
         return Scalar(text, NUMBER, rank, value, value)
 
@@ -270,7 +276,7 @@ class Program:
 
     def empty_values(self, block: Block) -> dict[str, str]:
         """Initializers of variables by their types in C."""
-        simple = {self.number: self._digits(0.0), "bool": "false", "int32_t": "0", "int64_t": "0"}
+        simple = {self.number: self.digits(0.0), "bool": "false", "int32_t": "0", "int64_t": "0"}
         return {each.kind: simple.get(each.kind, "{0}") for each in block.assignments()}
 
     # ------------------------------------------------------------ functions

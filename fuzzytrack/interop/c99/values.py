@@ -17,7 +17,7 @@ import numpy as np
 __all__ = [
     "ATOM", "BITWISE", "CHOICE", "COMPARED", "EQUAL", "LOGICAL", "NUMBER", "POSTFIX", "PRODUCT",
     "SUM", "TRUTH", "UNARY", "WHOLE", "Fixed", "Form", "Known", "Room", "Row", "Scalar", "Space",
-    "Value", "constant_tuple", "form_of", "joined", "leaves", "scalar_kind",
+    "Value", "Whole", "constant_tuple", "form_of", "joined", "leaves", "scalar_kind",
 ]  # fmt: skip
 
 #: Kinds of scalars: a floating-point number, an integer, a truth value.
@@ -33,6 +33,14 @@ class Room:
     """Form of numbers in memory, `length` of them."""
 
     length: int
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Form of an integer argument within limits."""
+
+    low: float
+    high: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +65,7 @@ class Fixed:
         return hash(self._key())
 
 
-#: NUMBER, WHOLE or TRUTH; a tuple of forms; Room; Fixed.
+#: NUMBER, WHOLE or TRUTH; a tuple of forms; Room; Whole; Fixed.
 Form = Any
 
 
@@ -151,11 +159,14 @@ def form_of(value: Value, *, passed: bool = False) -> Form:
         constant tuples that they are given, and not for floating-point numbers.
     """
     if isinstance(value, Scalar):
+        if passed and value.kind == WHOLE and max(-value.low, value.high) < 2.0**31 - 1:
+            return Whole(value.low, value.high)
         return value.kind
     if isinstance(value, Space):
         return Room(value.length)
     if isinstance(value, Row):
-        return tuple(form_of(item, passed=passed) for item in value.items)
+        forms = (form_of(item, passed=passed) for item in value.items)
+        return tuple(WHOLE if isinstance(form, Whole) else form for form in forms)
     kind = scalar_kind(value.value)
     if kind is None and not passed and constant_tuple(value.value):
         return tuple(form_of(Known(item)) for item in value.value)
