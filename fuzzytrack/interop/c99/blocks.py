@@ -136,9 +136,7 @@ class Block:
         counts = Counter(each.name for each in self.assignments())
         return self._lines(counts, set(taken), empty)
 
-    def _lines(
-        self, counts: Counter[str], declared: set[str], empty: dict[str, str]
-    ) -> list[str]:
+    def _lines(self, counts: Counter[str], declared: set[str], empty: dict[str, str]) -> list[str]:
         declared = set(declared)
         ahead = [
             f"{kind} {name} = {empty[kind]};"

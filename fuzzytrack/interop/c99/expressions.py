@@ -596,7 +596,12 @@ class ExpressionWriter:
             return self.refuse(node, "uses a place of an empty tuple")
         place = self.place(node, index, len(items))
         numbers = [item.value for item in items if isinstance(item, Known)]
-        if isinstance(owner, Known) and {*map(scalar_kind, numbers)} == {NUMBER}:
+        kinds = {*map(scalar_kind, numbers)}
+        if isinstance(owner, Known) and kinds == {WHOLE} and max(map(abs, numbers)) <= _INT32:
+            table = self.program.table(self.definition, node, owner.name or "table", numbers)
+            limits = float(min(numbers)), float(max(numbers))
+            return Scalar(f"{table}[{place}]", WHOLE, POSTFIX, *limits)
+        if isinstance(owner, Known) and kinds == {NUMBER}:
             table = self.program.table(self.definition, node, owner.name or "table", numbers)
             return Scalar(f"{table}[{place}]", NUMBER, POSTFIX)
         form = form_of(owner)

@@ -158,7 +158,7 @@ class _Template:
         self.name, self.number = parts.name, parts.number
         self.lanes = axes // self.rows.n_axes
         self.gain_sets = self.lanes * self.rows.gain_sets
-        self.size = np.dtype(DTYPES[parts.number]).itemsize
+        self.size = int(np.dtype(DTYPES[parts.number]).itemsize)
         self.elapsed = tracker.missed == "elapsed"
         self.prototype = (
             f"int32_t {self.name}_step({self.name}_state *state, double time, "
@@ -194,8 +194,8 @@ class _Template:
             "",
             f"/* What {self.name}_step returns. */",
             "enum {",
-            *(
-                f"    /* {words} */\n    {self.name}_{key} = {k}{',' if k + 1 < len(STATUS) else ''}"
+            ",\n".join(
+                f"    /* {words} */\n    {self.name}_{key} = {k}"
                 for k, (key, words) in enumerate(STATUS.items())
             ),
             "};",
@@ -241,7 +241,8 @@ class _Template:
             "    int32_t k;",
             "    int32_t j;",
             *([] if self.tracker.needs_sigma else ["    (void)sigma;"]),
-            "    if (!(time > -(double)INFINITY && time < (double)INFINITY) || time <= state->time) {",
+            "    /* A difference of infinite times, or of NaN, is NaN. */",
+            "    if (!(time - time == 0.0) || time <= state->time) {",
             f"        return {self.name}_TIME;",
             "    }",
             f"    for (k = 0; k < {self.axes}; ++k) {{",

@@ -141,8 +141,11 @@ class Program:
     @property
     def constants_bytes(self) -> int:
         """Size of the constants that are in tables, and of those that have names."""
-        sizes = (len(v) if isinstance(v, tuple) else 1 for v in self.constants.values())
-        return sum(sizes) * (8 if self.number == "double" else 4)
+        size = 8 if self.number == "double" else 4
+        return sum(
+            len(v) * (4 if _integers(v) else size) if isinstance(v, tuple) else size
+            for v in self.constants.values()
+        )
 
     def _struct_text(self, kinds: tuple[str, ...]) -> str:
         name = self.structs[kinds]
@@ -157,14 +160,15 @@ class Program:
         value = self.constants[name]
         if isinstance(value, float):
             return f"static const {self.number} {name} = {self.digits(value)};"
+        kind, write = ("int32_t", str) if _integers(value) else (self.number, self.digits)
         lines, line = [], "   "
         for number in value:
-            piece = f" {self.digits(number)},"
+            piece = f" {write(number)},"
             if len(line) + len(piece) > 100:
                 lines.append(line)
                 line = "   "
             line += piece
-        head = f"static const {self.number} {name}[{len(value)}] = {{"
+        head = f"static const {kind} {name}[{len(value)}] = {{"
         return "\n".join([head, *lines, line.rstrip(","), "};"])
 
     def origin(self, definition: Definition) -> str:
@@ -205,9 +209,11 @@ class Program:
         """Name of a constant."""
         return self._constant(name, self._checked(definition, node, value))
 
-    def table(self, definition: Definition, node: ast.AST, name: str, values: list[float]) -> str:
-        """Name of an array of constants."""
-        if self.number == "float":
+    def table(
+        self, definition: Definition, node: ast.AST, name: str, values: Sequence[float]
+    ) -> str:
+        """Name of an array of constants: numbers, or integers of 32 bits."""
+        if self.number == "float" and not _integers(values):
             try:
                 table(tuple(values), np.float32)
             except ValueError:
@@ -308,6 +314,10 @@ class Program:
             name = f"{base}_{count}"
         self._names.add(name)
         return name
+
+
+def _integers(values: Sequence[float]) -> bool:
+    return all(isinstance(value, int) for value in values)
 
 
 def _wrapped(line: str) -> str:
