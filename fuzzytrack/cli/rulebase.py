@@ -229,7 +229,7 @@ def set_(
     changed = set_cell(raw.decode("utf-8"), where, says, file=str(source))
     key = frozenset(where.items())
     after = loads_rulebase(changed)
-    (number,) = (n for n, r in enumerate(before.rules) if frozenset(r.conditions) == key)
+    (number,) = (n for n, r in enumerate(before.rules) if r.key == key)
     old, new = before.rules[number], after.rules[number]
     target = source if output is None else Path(output)
     if new != old or output is not None:

@@ -25,11 +25,8 @@ def print_rulebase(rules: RuleBase, heading: str) -> None:
     say()
     for role in ("inputs", "outputs"):
         _print_variables(role, rules)
-    operators = rules.operators
-    say(
-        f"and: {operators.conjunction}, or: {operators.disjunction}, "
-        f"defuzzification: {operators.defuzzification}"
-    )
+    for line in rules.algebra():
+        say(line)
     if rules.scheduler:
         say(f"scheduler: {', '.join(f'{key} {value}' for key, value in rules.scheduler)}")
     say()

@@ -22,6 +22,7 @@ def rulebase_as_json(rules: RuleBase) -> dict[str, Any]:
                 "grid": v.universe.grid,
                 "default": v.default,
                 "sets": {s.name: {s.shape: list(s.parameters)} for s in v.sets},
+                **({"operators": v.operators.words()} if v.operators else {}),
             }
             for v in getattr(rules, role)
         ]
@@ -32,11 +33,7 @@ def rulebase_as_json(rules: RuleBase) -> dict[str, Any]:
         "source": rules.source,
         "inputs": variables("inputs"),
         "outputs": variables("outputs"),
-        "operators": {
-            "and": rules.operators.conjunction,
-            "or": rules.operators.disjunction,
-            "defuzzification": rules.operators.defuzzification,
-        },
+        "operators": rules.operators.words(),
         "rules": [rule_as_json(rule) for rule in rules.rules],
         "scheduler": dict(rules.scheduler),
     }
@@ -48,4 +45,5 @@ def rule_as_json(rule: Rule) -> dict[str, Any]:
         {"output": c.output, "set": c.set_name, "confidence": c.confidence}
         for c in rule.consequents
     ]
-    return {"if": dict(rule.conditions), "then": then}
+    others = {"or": [dict(group) for group in rule.alternatives]} if rule.alternatives else {}
+    return {"if": dict(rule.conditions), **others, "then": then}

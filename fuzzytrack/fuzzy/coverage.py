@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import strengths
-from fuzzytrack.fuzzy.membership import TAILED
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 
@@ -124,10 +123,14 @@ def _concludes(rule: Rule, output: str) -> bool:
 
 
 def _conditions(rules: RuleBase, about: list[Rule]) -> NDArray[np.intp]:
-    """Index of the set that a rule needs of an input, -1 for any, shape (n_rules, n_inputs)."""
-    found = np.full((len(about), len(rules.inputs)), -1, dtype=np.intp)
-    for row, rule in enumerate(about):
-        for name, term in rule.conditions:
+    """Index of the set needed of an input, -1 for any, shape (n_groups, n_inputs).
+
+    A row for each group of conditions by which a rule fires.
+    """
+    groups = [group for rule in about for group in rule.groups]
+    found = np.full((len(groups), len(rules.inputs)), -1, dtype=np.intp)
+    for row, group in enumerate(groups):
+        for name, term in group:
             axis = rules.input_names.index(name)
             found[row, axis] = rules.inputs[axis].index(term)
     return found
@@ -139,25 +142,26 @@ def _conditions(rules: RuleBase, about: list[Rule]) -> NDArray[np.intp]:
 def _pieces(variable: Variable, used: NDArray[np.intp]) -> list[_Piece]:
     """Points and stretches of an input, in ascending order, with those `used` sets above 0."""
     universe = variable.universe
-    supports = [s.support() for s in variable.sets]
+    supports = [s.positive() for s in variable.sets]
     counts = np.isin(np.arange(len(supports)), used)
     ends = {universe.low, universe.high}
     ends |= {
         e
         for k in np.flatnonzero(counts)
-        for e in supports[k][:2]
+        for stretch in supports[k]
+        for e in stretch[:2]
         if universe.low < e < universe.high
     }
     knots = sorted(ends)
     found = []
     for low, high in zip(knots, [*knots[1:], None], strict=True):
-        at = [
-            a < low < b or (low == a and with_a) or (low == b and with_b)
-            for a, b, with_a, with_b in supports
-        ]
+        at = [any(low in stretch for stretch in stretches) for stretches in supports]
         found.append(_Piece(low, low, counts & at))
         if high is not None:
-            inside = [a <= low and high <= b and a < b for a, b, _, _ in supports]
+            inside = [
+                any(s.low <= low and high <= s.high and s.low < s.high for s in stretches)
+                for stretches in supports
+            ]
             found.append(_Piece(low, high, counts & inside))
     return found
 
@@ -233,14 +237,14 @@ def _widened(
 
 def _underflow(rules: RuleBase, about: list[Rule], output: str) -> Hole | None:
     """A point at which the strength of every rule about an output is lost, though none is 0."""
-    used = {condition for rule in about for condition in rule.conditions}
+    used = {condition for rule in about for group in rule.groups for condition in group}
     tailed = any(
-        fuzzy_set.shape in TAILED
+        fuzzy_set.is_tailed
         for variable in rules.inputs
         for fuzzy_set in variable.sets
         if (variable.name, fuzzy_set.name) in used
     )
-    if not tailed or rules.operators.conjunction != "product":
+    if not tailed or rules.operators.conjunction == "min":
         return None
     numbers = [k for k, rule in enumerate(rules.rules) if _concludes(rule, output)]
     axes = [_faintest(variable, used) for variable in rules.inputs]

@@ -18,7 +18,8 @@ _ROUNDING = 1e-12
 
 def centroid(y: Array, membership: Array) -> Array:
     """Center of gravity as a plain sum over the grid (Llinas et al. 1998, Eq. 3.10)."""
-    return np.asarray((membership @ y) / membership.sum(axis=-1))
+    moment = membership @ y if y.ndim == 1 else (membership * y).sum(axis=-1)
+    return np.asarray(moment / membership.sum(axis=-1))
 
 
 def bisector(y: Array, membership: Array) -> Array:
@@ -69,7 +70,7 @@ def defuzzify(method: str, y: Array, membership: Array) -> Array:
     method : str
         A key of `DEFUZZIFIERS`.
     y : ndarray, shape (n,)
-        Grid of the output.
+        Grid of the output; for a centroid also one for each fuzzy output, shape (..., n).
     membership : ndarray, shape (..., n)
         Fuzzy outputs on that grid, nonnegative.
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.fuzzy.rulebase import Operators, RuleBase
+from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS
+from fuzzytrack.fuzzy.operators import Operators
+from fuzzytrack.fuzzy.rulebase import Conditions, RuleBase
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.reprs import summary
 
@@ -19,13 +22,13 @@ __all__ = ["Conclusions", "conclusions", "conjoin", "disjoin", "output_grid", "s
 _ROUNDING = 1e-9
 
 
-def conjoin(operators: Operators, a: Array, b: Array | float) -> Array:
+def conjoin(operators: Operators, a: Array, b: Array) -> Array:
     """AND of two arrays of grades (Table 3.1 of Llinas et al. 1998)."""
-    return a * b if operators.conjunction == "product" else np.minimum(a, b)
+    return T_NORMS[operators.conjunction].values(a, b)
 
 
 def disjoin(operators: Operators, grades: Array, axis: int | tuple[int, ...]) -> Array:
-    """OR over axes of an array of grades (Table 3.1)."""
+    """OR over axes of an array of grades (Table 3.1): sum or max."""
     return np.asarray(grades.sum(axis) if operators.disjunction == "sum" else grades.max(axis))
 
 
@@ -90,21 +93,23 @@ class Conclusions:
 
     def infer(self, strength: Array) -> Array:
         """Fuzzy output, shape (n, n_grid), from rule strengths, shape (n, n_rules)."""
-        called = conjoin(self.operators, strength[:, self.rule], self.confidence)
-        if self.operators.disjunction == "sum" and self.operators.conjunction == "min":
-            # The sum of clipped sets does not regroup by set: add rule by rule.
-            fuzzy = np.zeros((len(strength), len(self.y)))
-            for column, term in enumerate(self.term):
-                fuzzy += np.minimum(called[:, column, None], self.grades[term])
-            return fuzzy
-        if self.operators.disjunction == "sum":
+        operators = self.operators
+        called = T_NORMS[operators.weighing].values(strength[:, self.rule], self.confidence)
+        imply = T_NORMS[operators.implying].values
+        if operators.disjunction == "sum" and operators.implying == "product":
             chosen = np.zeros((len(self.term), len(self.grades)))
             chosen[np.arange(len(self.term)), self.term] = 1.0
             return np.asarray((called @ chosen) @ self.grades)
         fuzzy = np.zeros((len(strength), len(self.y)))
-        for term in np.unique(self.term):
-            level = called[:, self.term == term].max(axis=1)
-            np.maximum(fuzzy, conjoin(self.operators, level[:, None], self.grades[term]), out=fuzzy)
+        if operators.disjunction == "max":
+            for term in np.unique(self.term):
+                level = called[:, self.term == term].max(axis=1)
+                np.maximum(fuzzy, imply(level[:, None], self.grades[term]), out=fuzzy)
+            return fuzzy
+        # The sum of clipped sets does not regroup by set: join rule by rule.
+        join = S_NORMS[operators.disjunction].values
+        for column, term in enumerate(self.term):
+            fuzzy = join(fuzzy, imply(called[:, column, None], self.grades[term]))
         return fuzzy
 
 
@@ -117,10 +122,9 @@ def conclusions(rulebase: RuleBase, output: Variable) -> Conclusions:
         if consequent.output == output.name
     ]
     rule, term, confidence = zip(*rows, strict=True)
-    y, grades = output_grid(rulebase.operators, output)
-    return Conclusions(
-        rulebase.operators, np.array(rule), np.array(term), np.array(confidence), y, grades
-    )
+    operators = rulebase.operators_of(output)
+    y, grades = output_grid(operators, output)
+    return Conclusions(operators, np.array(rule), np.array(term), np.array(confidence), y, grades)
 
 
 def strengths(
@@ -141,14 +145,12 @@ def strengths(
     -------
     ndarray, shape (n, n_rules)
     """
-    columns = []
-    for rule in rulebase.rules:
-        strength: Array | None = None
-        for name, term in rule.conditions:
-            grade = grades[name][rulebase.input(name).index(term)]
-            strength = grade if strength is None else conjoin(rulebase.operators, strength, grade)
-        for name, grade in (whole or {}).items():
-            if strength is not None and name not in dict(rule.conditions):
-                strength = conjoin(rulebase.operators, strength, grade)
-        columns.append(strength)
-    return np.stack([c for c in columns if c is not None]).T
+
+    def strength(conditions: Conditions) -> Array:
+        members = [grades[name][rulebase.input(name).index(term)] for name, term in conditions]
+        named = dict(conditions)
+        members += [grade for name, grade in (whole or {}).items() if name not in named]
+        return reduce(T_NORMS[rulebase.operators.conjunction].values, members)
+
+    either = S_NORMS[rulebase.operators.alternatives].values
+    return np.stack([reduce(either, map(strength, r.groups)) for r in rulebase.rules]).T

@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.fuzzy.inference import Conclusions, conclusions
+from fuzzytrack.fuzzy.membership import LINEAR
+from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS, Norm
 from fuzzytrack.fuzzy.ramps import find_ramps
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
@@ -65,7 +67,8 @@ class _Writer:
         self.rules = system.rules
         self.lines: list[str] = []
         self.known: dict[tuple[str, ...], str] = {}
-        self.constants: dict[str, Any] = {"exp": math.exp, "nan": math.nan}
+        self.count = 0
+        self.constants: dict[str, Any] = {"exp": math.exp, "cos": math.cos, "nan": math.nan}
 
     def inputs(self) -> None:
         for k, variable in enumerate(self.rules.inputs):
@@ -101,26 +104,33 @@ class _Writer:
             for j, fuzzy_set in enumerate(variable.sets):
                 self.lines.append(f"g{k}_{j} = {fuzzy_set.expression(f'x{k}')}")
         for r, rule in enumerate(self.rules.rules):
-            grades = [
-                f"g{self.rules.input_names.index(name)}_{self.rules.input(name).index(term)}"
-                for name, term in rule.conditions
+            names = self.rules.input_names
+            operators = self.rules.operators
+            joint = [
+                self._fold(
+                    T_NORMS[operators.conjunction],
+                    [f"g{names.index(n)}_{self.rules.input(n).index(term)}" for n, term in group],
+                )
+                for group in rule.groups
             ]
-            self.lines.append(f"s{r} = {self._and(grades)}")
+            strength = self._fold(S_NORMS[operators.alternatives], joint)
+            self.lines.append(f"s{r} = {strength}")
         for k, output in enumerate(self.rules.outputs):
             self._exact_output(k, output)
 
     def _exact_output(self, k: int, output: Variable) -> None:
         about = conclusions(self.rules, output)
-        operators = self.rules.operators
+        operators = about.operators
         if operators.defuzzification not in ("centroid", "weighted-centers"):
             raise ValueError(
                 f"method='exact' schedules gains with centroid or weighted-centers; for "
                 f"{operators.defuzzification} use method='relation' or 'table'"
             )
-        if operators.disjunction == "sum" and operators.conjunction == "product":
+        products = operators.implying == operators.weighing == "product"
+        if operators.disjunction == "sum" and products and not output.is_linear:
             moment, total = self._weighted_rules(about)
         elif operators.defuzzification == "weighted-centers":
-            moment, total = self._weighted_levels(k, about)
+            moment, total = self._weighted_levels(k, about, output)
         else:
             moment, total = self._over_grid(k, about)
         default = "nan" if output.default is None else repr(output.default)
@@ -142,55 +152,73 @@ class _Writer:
             totals.append(f"s{r}" if total == 1.0 else f"s{r} * {total!r}")
         return self._sum(moments), self._sum(totals)
 
-    def _weighted_levels(self, k: int, about: Conclusions) -> tuple[str, str]:
-        levels = list(self._levels(k, about))
-        moments = [f"{level} * {float(about.y[term])!r}" for level, term in levels]
+    def _weighted_levels(self, k: int, about: Conclusions, output: Variable) -> tuple[str, str]:
+        levels = list(self._levels(k, about, by_set=about.operators.disjunction != "sum"))
+        values = [
+            _linear(s.parameters) if s.base == LINEAR else repr(float(y))
+            for s, y in zip(output.sets, about.y, strict=True)
+        ]
+        moments = [f"{level} * {values[term]}" for level, term in levels]
         return self._sum(moments), self._sum([level for level, _ in levels])
 
     def _over_grid(self, k: int, about: Conclusions) -> tuple[str, str]:
         """Clipped or overlapping sets: sum over the output's grid (Eq. 3.10)."""
-        levels = list(self._levels(k, about))
+        operators = about.operators
+        levels = list(self._levels(k, about, by_set=operators.disjunction == "max"))
         n_sets = len(about.grades)
         self.constant(f"B{k}", about.grades.T)
         self.constant(f"Y{k}", about.y)
-        members = [self._and([level, f"B{k}[{n_sets} * k + {term}]"]) for level, term in levels]
+        self.lines += [f"m{k} = t{k} = 0.0", f"for k in range({len(about.y)}):"]
+        members = []
+        for level, term in levels:
+            grade = [level, f"B{k}[{n_sets} * k + {term}]"]
+            members.append(self._fold(T_NORMS[operators.implying], grade, "    "))
+        joined = self._fold(S_NORMS[operators.disjunction], members, "    ")
         self.lines += [
-            f"m{k} = t{k} = 0.0",
-            f"for k in range({len(about.y)}):",
-            f"    b = {self._or(members)}",
+            f"    b = {joined}",
             f"    m{k} = m{k} + b * Y{k}[k]",
             f"    t{k} = t{k} + b",
         ]
         return f"m{k}", f"t{k}"
 
-    def _levels(self, k: int, about: Conclusions) -> Iterator[tuple[str, int]]:
-        """Names of the levels at which output sets are called: by set for max, by rule for sum."""
+    def _levels(self, k: int, about: Conclusions, *, by_set: bool) -> Iterator[tuple[str, int]]:
+        """Names of the levels at which output sets are called, joined by set or for each rule."""
+        weigh = T_NORMS[about.operators.weighing]
         called = [
-            f"s{r}" if c == 1.0 else self._and([f"s{r}", repr(float(c))])
+            f"s{r}" if c == 1.0 else self._fold(weigh, [f"s{r}", repr(float(c))])
             for r, c in zip(about.rule, about.confidence, strict=True)
         ]
-        if self.rules.operators.disjunction == "sum":
-            groups = [
-                ([expression], int(t)) for expression, t in zip(called, about.term, strict=True)
-            ]
-        else:
+        if by_set:
             groups = [
                 ([called[i] for i in np.flatnonzero(about.term == t)], int(t))
                 for t in np.unique(about.term)
             ]
+        else:
+            groups = [
+                ([expression], int(t)) for expression, t in zip(called, about.term, strict=True)
+            ]
         for number, (expressions, term) in enumerate(groups):
-            self.lines.append(f"l{k}_{number} = {self._or(expressions)}")
+            level = self._fold(S_NORMS[about.operators.disjunction], expressions)
+            self.lines.append(f"l{k}_{number} = {level}")
             yield f"l{k}_{number}", term
 
-    def _and(self, terms: list[str]) -> str:
-        if self.rules.operators.conjunction == "product":
-            return " * ".join(terms)
-        return _nest("min", terms)
-
-    def _or(self, terms: list[str]) -> str:
-        if self.rules.operators.disjunction == "sum":
-            return " + ".join(terms)
-        return _nest("max", terms)
+    def _fold(self, norm: Norm, terms: list[str], margin: str = "") -> str:
+        """Expression of a norm of some terms; one that repeats its arguments is given a name."""
+        expression = terms[0]
+        for term in terms[1:]:
+            if not norm.repeats:
+                expression = norm.expression(expression, term)
+                continue
+            names = []
+            for part in (expression, term):
+                if part.isidentifier():
+                    names.append(part)
+                    continue
+                self.count += 1
+                names.append(f"n{self.count}")
+                self.lines.append(f"{margin}{names[-1]} = {part}")
+            expression = norm.expression(*names)
+        return expression
 
     def _sum(self, terms: list[str]) -> str:
         """Name of the sum of some terms, written once; long sums in several lines."""
@@ -236,11 +264,11 @@ class _Writer:
             self.lines.append(f"y{k} = {_interpolation(f'T{k}', strides, 0, 0)}")
 
 
-def _nest(function: str, terms: list[str]) -> str:
-    expression = terms[0]
-    for term in terms[1:]:
-        expression = f"{function}({expression}, {term})"
-    return expression
+def _linear(parameters: tuple[float, ...]) -> str:
+    """Value of a linear set at the inputs."""
+    *slopes, constant = parameters
+    terms = [f"{slope!r} * x{k}" for k, slope in enumerate(slopes)]
+    return f"({' + '.join(terms)} + {constant!r})"
 
 
 def _flat_index(lengths: list[int]) -> str:

@@ -74,11 +74,16 @@ class Ramps:
 
 def find_ramps(rules: RuleBase) -> Ramps | None:
     """Ramps of a rule base, or None if it cannot be written with them."""
-    operators = rules.operators
-    if (operators.conjunction, operators.disjunction) != ("product", "sum"):
+    if rules.operators.conjunction != "product" or any(rule.alternatives for rule in rules.rules):
         return None
-    if operators.defuzzification not in ("centroid", "weighted-centers"):
-        return None
+    for output in rules.outputs:
+        operators = rules.operators_of(output)
+        if not operators.is_classical or operators.conjunction != "product" or output.is_linear:
+            return None
+        if operators.disjunction != "sum":
+            return None
+        if operators.defuzzification not in ("centroid", "weighted-centers"):
+            return None
     orders = [_order(variable) for variable in rules.inputs]
     cells = {}
     for output in rules.outputs:
@@ -127,11 +132,7 @@ def _cells(rules: RuleBase, about: Conclusions, shape: list[int]) -> Array | Non
         where: list[int | slice] = [slice(None)] * len(shape)
         for name, word in rules.rules[r].conditions:
             axis = rules.input_names.index(name)
-            if where[axis] not in (slice(None), rules.inputs[axis].index(word)):
-                return None
             where[axis] = rules.inputs[axis].index(word)
-        if len({name for name, _ in rules.rules[r].conditions}) < len(rules.rules[r].conditions):
-            return None
         totals[tuple(where)] += confidence * area[term]
         moments[tuple(where)] += confidence * first[term]
     largest = float(totals.max())

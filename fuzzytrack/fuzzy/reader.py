@@ -11,12 +11,10 @@ from dataclasses import replace
 
 from fuzzytrack.errors import Location, Word
 from fuzzytrack.fuzzy.cells import CellReader
-from fuzzytrack.fuzzy.membership import SHAPES, TAILED, FuzzySet
+from fuzzytrack.fuzzy.membership import SHAPES, FuzzySet
+from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DEFUZZIFICATIONS, DISJUNCTIONS, Operators
 from fuzzytrack.fuzzy.rulebase import (
-    CONJUNCTIONS,
-    DEFUZZIFICATIONS,
-    DISJUNCTIONS,
-    Operators,
+    Conditions,
     Rule,
     RuleBase,
     TableLayout,
@@ -64,7 +62,7 @@ class Reader:
         self.document = document
         self.inputs: dict[str, Variable] = {}
         self.outputs: dict[str, Variable] = {}
-        self.rule_nodes: dict[frozenset[tuple[str, str]], tuple[Node, bool]] = {}
+        self.rule_nodes: dict[frozenset[object], tuple[Node, bool]] = {}
         self.places: dict[str, Location] = {}
         self.cells = CellReader(document, {})
 
@@ -121,13 +119,19 @@ class Reader:
             "and": CONJUNCTIONS,
             "or": DISJUNCTIONS,
             "defuzzification": DEFUZZIFICATIONS,
+            "implication": CONJUNCTIONS,
+            "weighting": CONJUNCTIONS,
+            "alternatives": DISJUNCTIONS,
         }
-        fields = self.document.fields(node, "operators", tuple(vocabulary))
+        required, optional = tuple(vocabulary)[:3], tuple(vocabulary)[3:]
+        fields = self.document.fields(node, "operators", required, optional)
         words = {
             key: self.document.choice(fields[key], key, allowed)
             for key, allowed in vocabulary.items()
+            if key in fields
         }
-        return Operators(words["and"], words["or"], words["defuzzification"])
+        main = [words.pop(key) for key in required]
+        return Operators(*main, **words)
 
     def _scheduler(self, node: Node) -> tuple[tuple[str, str], ...]:
         """Words with their places, unread: they are checked when a scheduler is made."""
@@ -164,7 +168,7 @@ class Reader:
 
     def _variable(self, name: str, node: Node, role: str) -> Variable:
         document = self.document
-        optional = ("label", "unit") if role == "input" else ("label", "unit", "default")
+        optional = ("label", "unit", *(("default", "operators") if role == "output" else ()))
         fields = document.fields(node, f"{role} {name}", ("universe", "sets"), optional)
         universe = self._universe(fields["universe"])
         self.places[name] = document.location(fields["universe"])
@@ -177,6 +181,8 @@ class Reader:
                 label=document.text(fields["label"], "label") if "label" in fields else "",
                 unit=document.text(fields["unit"], "unit") if "unit" in fields else "",
             )
+        if "operators" in fields:
+            variable = replace(variable, operators=self._operators(fields["operators"]))
         if "default" not in fields:
             return variable
         default = document.number(fields["default"], "default")
@@ -208,20 +214,22 @@ class Reader:
 
     def _sets(self, node: Node, variable: str, universe: Universe) -> list[FuzzySet]:
         sets: list[FuzzySet] = []
-        highest = -math.inf
+        highest, last = -math.inf, ""
         for key, value in self.document.entries(node, f"sets of {variable}").values():
             self._check_set_name(key)
             fuzzy_set = self._set(key.text, value)
+            sets.append(fuzzy_set)
+            if not fuzzy_set.has_core:
+                continue
             self._check_place(fuzzy_set, value, variable, universe)
             center = fuzzy_set.center(universe.low, universe.high)
             if center < highest:
                 raise self.document.error(
                     key,
                     f"sets of {variable} must be listed by ascending peak: {fuzzy_set.name!r} at "
-                    f"{center:g} comes after {sets[-1].name!r} at {highest:g}",
+                    f"{center:g} comes after {last!r} at {highest:g}",
                 )
-            highest = center
-            sets.append(fuzzy_set)
+            highest, last = center, fuzzy_set.name
         return sets
 
     def _check_set_name(self, key: Scalar) -> None:
@@ -249,8 +257,8 @@ class Reader:
         self, fuzzy_set: FuzzySet, node: Node, variable: str, universe: Universe
     ) -> None:
         start, end = SHAPES[fuzzy_set.shape].core(fuzzy_set.parameters)
-        # A sigmoid is never exactly 1; it is enough that it is above zero somewhere.
-        low, high = fuzzy_set.support()[:2] if math.isinf(start) and start == end else (start, end)
+        # A tail is above zero everywhere, and a sigmoid is never exactly 1.
+        low, high = fuzzy_set.support()[:2] if fuzzy_set.is_tailed else (start, end)
         if high < universe.low or low > universe.high:
             raise self.document.error(
                 node,
@@ -260,10 +268,10 @@ class Reader:
 
     def _check_output_grids(self, node: Node, operators: Operators) -> None:
         """Every output set must be above zero somewhere on the grid, or it would have no effect."""
-        if operators.defuzzification == "weighted-centers":
-            return
         for name, (_, value) in self.document.entries(node, "outputs").items():
             variable = self.outputs[name]
+            if (variable.operators or operators).defuzzification == "weighted-centers":
+                continue
             sets = self.document.entries(self.document.entries(value, name)["sets"][1], "sets")
             for fuzzy_set in variable.sets:
                 if not _on_grid(fuzzy_set, variable.universe):
@@ -281,17 +289,18 @@ class Reader:
                 continue
             about = [r for r in rulebase.rules if _concludes(r, output.name)]
             for variable in rulebase.inputs:
-                terms = [dict(rule.conditions).get(variable.name) for rule in about]
+                groups = [dict(group) for rule in about for group in rule.groups]
+                terms = [group.get(variable.name) for group in groups]
                 if None in terms:
                     continue
                 used = {term for term in terms if term is not None}
                 for low, high in variable.uncovered(used):
-                    shapes = {s.shape for s in variable.sets if s.name in used}
+                    tailed = all(s.is_tailed for s in variable.sets if s.name in used)
                     lost = " (its sets are so narrow that their grades underflow to 0)"
                     raise self.document.error(
                         entries[variable.name][0],
                         f"no rule about {output.name} can fire for {variable.name} "
-                        f"{_stretch(low, high)}{lost if shapes <= set(TAILED) else ''}; "
+                        f"{_stretch(low, high)}{lost if tailed else ''}; "
                         f"cover it, or give {output.name} a default",
                     )
 
@@ -362,20 +371,28 @@ class Reader:
         document = self.document
         entries = document.entries(node, "a rule")
         either = "if any" if "if any" in entries else "if"
-        fields = document.fields(node, "a rule", (either, "then"), ("if", "if any"))
-        if len(fields) == 3:
+        fields = document.fields(node, "a rule", (either, "then"), ("if", "if any", "or"))
+        if "if" in fields and "if any" in fields:
             raise document.error(entries["if"][0], "a rule takes 'if' or 'if any', not both")
-        conditions = [
-            self._condition(key, value)
-            for key, value in document.entries(fields[either], quoted(either)).values()
-        ]
+        if "or" in fields and either == "if any":
+            raise document.error(entries["or"][0], "'or' goes with 'if', not with 'if any'")
+        conditions = self._group(fields[either], either)
         if either == "if":
-            return [self._rule(tuple(conditions), fields["then"], node, tuple(self.outputs))]
+            others = document.items(fields["or"], "'or'") if "or" in fields else ()
+            alternatives = tuple(self._group(item, "or") for item in others)
+            then, outputs = fields["then"], tuple(self.outputs)
+            return [self._rule(conditions, then, node, outputs, alternatives=alternatives)]
         shared = len(conditions) > 1
         return [
             self._rule((condition,), fields["then"], node, tuple(self.outputs), shared)
             for condition in conditions
         ]
+
+    def _group(self, node: Node, word: str) -> Conditions:
+        return tuple(
+            self._condition(key, value)
+            for key, value in self.document.entries(node, quoted(word)).values()
+        )
 
     def _condition(self, key: Scalar, value: Node) -> tuple[str, str]:
         if key.text not in self.inputs:
@@ -386,19 +403,20 @@ class Reader:
 
     def _rule(
         self,
-        conditions: tuple[tuple[str, str], ...],
+        conditions: Conditions,
         consequents: Node,
         node: Node,
         order: tuple[str, ...],
         shared: bool = False,
+        alternatives: tuple[Conditions, ...] = (),
     ) -> Rule:
-        key = frozenset(conditions)
-        if key in self.rule_nodes:
-            words = " and ".join(f"{name} is {term}" for name, term in conditions)
-            raise self.document.error(node, f"two rules with the same conditions: if {words}")
-        self.rule_nodes[key] = consequents, shared
         with self.document.at(consequents):
-            return Rule(conditions, self.cells.read(consequents, order))
+            rule = Rule(conditions, self.cells.read(consequents, order), alternatives)
+        if rule.key in self.rule_nodes:
+            words = str(rule).partition(" then ")[0]
+            raise self.document.error(node, f"two rules with the same conditions: {words}")
+        self.rule_nodes[rule.key] = consequents, shared
+        return rule
 
 
 def _concludes(rule: Rule, output: str) -> bool:
@@ -409,15 +427,15 @@ def _on_grid(fuzzy_set: FuzzySet, universe: Universe) -> bool:
     """Whether a set is above zero at one grid point at least."""
     if fuzzy_set.shape == "singleton":
         return True  # it belongs to the nearest point
-    low, high, with_low, with_high = fuzzy_set.support()
-    nearest = (max(low, universe.first) - universe.first) / universe.step
-    first = min(max(int(nearest) - 1, 0), universe.points - 1)
-    for index in range(first, min(first + 4, universe.points)):
-        point = universe.first + index * universe.step
-        if index == universe.points - 1 and universe.grid == "ends":
-            point = universe.high
-        if low < point < high or (point == low and with_low) or (point == high and with_high):
-            return True
+    for stretch in fuzzy_set.positive():
+        nearest = (max(stretch.low, universe.first) - universe.first) / universe.step
+        first = min(max(int(nearest) - 1, 0), universe.points - 1)
+        for index in range(first, min(first + 4, universe.points)):
+            point = universe.first + index * universe.step
+            if index == universe.points - 1 and universe.grid == "ends":
+                point = universe.high
+            if point in stretch:
+                return True
     return False
 
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.inference import conjoin, disjoin, output_grid
-from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
+from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS
+from fuzzytrack.fuzzy.rulebase import Conditions, Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 
 __all__ = ["MAX_ELEMENTS", "compose", "relation"]
@@ -28,7 +31,7 @@ def relation(rulebase: RuleBase, output: Variable) -> Array:
     ValueError
         If the matrix would hold more than `MAX_ELEMENTS` elements.
     """
-    operators = rulebase.operators
+    operators = rulebase.operators_of(output)
     y, output_grades = output_grid(operators, output)
     shape = (*(v.universe.points for v in rulebase.inputs), len(y))
     if np.prod([float(n) for n in shape]) > MAX_ELEMENTS:
@@ -44,26 +47,30 @@ def relation(rulebase: RuleBase, output: Variable) -> Array:
                 continue
             grades = output_grades[output.index(consequent.set_name)]
             # μ_r(x, y) = μ_A(x) and μ_B(y) and c (Eq. 3.3)
-            member = conjoin(operators, antecedent[..., None], grades)
-            member = conjoin(operators, member, consequent.confidence)
-            if operators.disjunction == "sum":
-                matrix += member
-            else:
-                np.maximum(matrix, member, out=matrix)
+            sure = np.asarray(consequent.confidence)
+            level = T_NORMS[operators.weighing].values(antecedent[..., None], sure)
+            member = T_NORMS[operators.implying].values(level, grades)
+            matrix = S_NORMS[operators.disjunction].values(matrix, member)
     return matrix
 
 
 def _antecedent(rulebase: RuleBase, rule: Rule) -> Array:
     """μ_A of one rule over the grid of all inputs (Eq. 3.4); inputs not named keep length 1."""
-    terms = dict(rule.conditions)
-    grades: Array = np.ones((1,) * len(rulebase.inputs))
+    either = S_NORMS[rulebase.operators.alternatives].values
+    return reduce(either, (_joint(rulebase, group) for group in rule.groups))
+
+
+def _joint(rulebase: RuleBase, conditions: Conditions) -> Array:
+    """Grade of conditions that hold together, over the grid of all inputs."""
+    terms = dict(conditions)
+    rows = []
     for axis, variable in enumerate(rulebase.inputs):
         if variable.name in terms:
-            row = variable.memberships()[variable.index(terms[variable.name])]
             shape = [1] * len(rulebase.inputs)
             shape[axis] = -1
-            grades = conjoin(rulebase.operators, grades, row.reshape(shape))
-    return grades
+            grades = variable.memberships()[variable.index(terms[variable.name])]
+            rows.append(grades.reshape(shape))
+    return reduce(T_NORMS[rulebase.operators.conjunction].values, rows)
 
 
 def compose(rulebase: RuleBase, matrix: Array, fuzzy_inputs: list[Array]) -> Array:

@@ -6,10 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DEFUZZIFICATIONS, DISJUNCTIONS
 from fuzzytrack.fuzzy.rulebase import (
-    CONJUNCTIONS,
-    DEFUZZIFICATIONS,
-    DISJUNCTIONS,
     Consequent,
     Rule,
     RuleBase,
@@ -71,8 +69,7 @@ def _with_cell(edits: TextEdits, where: Mapping[str, str], cell: str) -> EditedT
         cell = consequents_text(wanted)
     edits.replace(node.start, node.end, cell.strip())
     expected = tuple(
-        replace(rule, consequents=wanted) if frozenset(rule.conditions) == key else rule
-        for rule in before.rules
+        replace(rule, consequents=wanted) if rule.key == key else rule for rule in before.rules
     )
     return edits.result(replace(before, rules=expected), node, quoted(cell))
 
@@ -182,7 +179,7 @@ def remove_rule(text: str, where: Mapping[str, str], file: str = "<text>") -> Ed
         assert isinstance(item, MappingNode)  # the text has been read as a rule base
         if edits.reader.rule_nodes[key][0] is item.entries["then"][1]:
             edits.remove(rules, index)
-    kept = tuple(rule for rule in edits.before.rules if frozenset(rule.conditions) != key)
+    kept = tuple(rule for rule in edits.before.rules if rule.key != key)
     return edits.result(replace(edits.before, rules=kept), rules, "the removal")
 
 

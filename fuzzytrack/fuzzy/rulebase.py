@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from fuzzytrack.errors import Location, RuleBaseError
+from fuzzytrack.fuzzy.membership import LINEAR
+from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.html_reprs import Cell, block, paragraph, table, tinted
 from fuzzytrack.reprs import shown
@@ -14,51 +16,24 @@ from fuzzytrack.reprs import shown
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["DEFUZZIFICATIONS", "Consequent", "Operators", "Rule", "RuleBase", "TableLayout"]
+__all__ = [
+    "MAX_ALTERNATIVES",
+    "Conditions",
+    "Consequent",
+    "Operators",
+    "Rule",
+    "RuleBase",
+    "TableLayout",
+]
 
-CONJUNCTIONS = ("product", "min")
-DISJUNCTIONS = ("sum", "max")
-DEFUZZIFICATIONS = ("centroid", "bisector", "mom", "som", "lom", "weighted-centers")
-
+_USUAL = Operators()
 MAX_INPUTS = 8
 MAX_OUTPUTS = 16
 MAX_RULES = 10_000
+MAX_ALTERNATIVES = 64
 
-
-@dataclass(frozen=True)
-class Operators:
-    """The algebra of a rule base (Llinas et al. 1998, Table 3.1).
-
-    Parameters
-    ----------
-    conjunction : {"product", "min"}
-        The AND of Eqs. 3.3 and 3.4, also the composition's.
-    disjunction : {"sum", "max"}
-        The OR of Eq. 3.5, also the composition's. ``sum`` is the plain sum, not a bounded one.
-    defuzzification : {"centroid", "bisector", "mom", "som", "lom", "weighted-centers"}
-        ``centroid`` is the plain sum over the output grid (Eq. 3.10), ``weighted-centers`` the
-        centroid over the sets' centers alone (Eqs. 3.12 and 3.13).
-
-    Raises
-    ------
-    RuleBaseError
-        If a name is unknown.
-    """
-
-    conjunction: str = "product"
-    disjunction: str = "sum"
-    defuzzification: str = "centroid"
-
-    def __post_init__(self) -> None:
-        for role, word, allowed in (
-            ("and", self.conjunction, CONJUNCTIONS),
-            ("or", self.disjunction, DISJUNCTIONS),
-            ("defuzzification", self.defuzzification, DEFUZZIFICATIONS),
-        ):
-            if word not in allowed:
-                raise RuleBaseError(
-                    f"operators: unknown {role} {word!r}; one of {', '.join(allowed)}"
-                )
+#: Pairs (input, set).
+Conditions = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -89,19 +64,26 @@ class Rule:
         Pairs (input, set); an input that is not named does not matter.
     consequents : tuple of Consequent
         At least one; several for one output share it by their confidences (Eq. 3.12).
+    alternatives : tuple of tuple of (str, str)
+        Further conditions: the rule fires if those of any group hold.
     """
 
-    conditions: tuple[tuple[str, str], ...]
+    conditions: Conditions
     consequents: tuple[Consequent, ...]
+    alternatives: tuple[Conditions, ...] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "conditions", tuple((str(i), str(s)) for i, s in self.conditions))
+        object.__setattr__(self, "conditions", _as_pairs(self.conditions))
         object.__setattr__(self, "consequents", tuple(self.consequents))
-        inputs = [name for name, _ in self.conditions]
-        if not inputs:
-            raise RuleBaseError("a rule needs at least one condition")
-        if len(set(inputs)) < len(inputs):
-            raise RuleBaseError(f"a rule names an input twice: {', '.join(inputs)}")
+        object.__setattr__(self, "alternatives", tuple(map(_as_pairs, self.alternatives)))
+        for group in self.groups:
+            inputs = [name for name, _ in group]
+            if not inputs:
+                raise RuleBaseError("a rule needs at least one condition")
+            if len(set(inputs)) < len(inputs):
+                raise RuleBaseError(f"a rule names an input twice: {', '.join(inputs)}")
+        if len(self.alternatives) >= MAX_ALTERNATIVES:
+            raise RuleBaseError(f"a rule takes up to {MAX_ALTERNATIVES} alternatives")
         if not self.consequents:
             raise RuleBaseError("a rule needs at least one consequent")
         targets = [(c.output, c.set_name) for c in self.consequents]
@@ -109,8 +91,32 @@ class Rule:
             raise RuleBaseError(f"a rule names a consequent twice: {self}")
 
     def __str__(self) -> str:
-        condition = " and ".join(f"{name} is {term}" for name, term in self.conditions)
+        condition = " or ".join(map(_said, self.groups))
         return f"if {condition} then {', '.join(map(str, self.consequents))}"
+
+    @property
+    def groups(self) -> tuple[Conditions, ...]:
+        """The conditions and the alternatives to them."""
+        return (self.conditions, *self.alternatives)
+
+    @property
+    def key(self) -> frozenset[tuple[str, str] | frozenset[tuple[str, str]]]:
+        """What no two rules of a rule base have in common: all conditions, in no order."""
+        if not self.alternatives:
+            return frozenset(self.conditions)
+        return frozenset(map(frozenset, self.groups))
+
+    def asks(self, name: str, silent: str = "") -> str:
+        """What the rule asks of an input, in words; `silent` where it does not matter."""
+        return " or ".join(dict(group).get(name, silent) for group in self.groups)
+
+
+def _as_pairs(conditions: Conditions) -> Conditions:
+    return tuple((str(name), str(term)) for name, term in conditions)
+
+
+def _said(conditions: Conditions) -> str:
+    return " and ".join(f"{name} is {term}" for name, term in conditions)
 
 
 @dataclass(frozen=True)
@@ -162,7 +168,7 @@ class RuleBase:
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     rules: tuple[Rule, ...]
-    operators: Operators = Operators()
+    operators: Operators = _USUAL
     source: str = ""
     description: str = ""
     scheduler: tuple[tuple[str, str], ...] = ()
@@ -180,13 +186,13 @@ class RuleBase:
         self._check_variables()
         if not 1 <= len(self.rules) <= MAX_RULES:
             raise RuleBaseError(f"a rule base needs 1 to {MAX_RULES} rules, got {len(self.rules)}")
-        seen: dict[frozenset[tuple[str, str]], Rule] = {}
+        seen: dict[frozenset[object], Rule] = {}
         for rule in self.rules:
             self._check_rule(rule)
-            key = frozenset(rule.conditions)
-            if key in seen:
-                raise RuleBaseError(f"two rules with the same conditions: {rule}; and {seen[key]}")
-            seen[key] = rule
+            if rule.key in seen:
+                before = seen[rule.key]
+                raise RuleBaseError(f"two rules with the same conditions: {rule}; and {before}")
+            seen[rule.key] = rule
         object.__setattr__(self, "rules", self._in_order())
         for output in self.outputs:
             if not any(c.output == output.name for rule in self.rules for c in rule.consequents):
@@ -210,12 +216,8 @@ class RuleBase:
 
     def html_parts(self) -> tuple[str, ...]:
         """Description, rules and operators, as parts of HTML."""
-        operators = self.operators
         settings = ", ".join(f"{key} {value}" for key, value in self.scheduler)
-        said = (
-            f"and: {operators.conjunction}, or: {operators.disjunction}, "
-            f"defuzzification: {operators.defuzzification}"
-        )
+        said = "; ".join(self.algebra())
         rules = _html_list(self) if self.layout is None else _html_table(self, self.layout)
         source = f"Source: {self.source}" if self.source else ""
         notes = (said, f"scheduler: {settings}" if settings else "", source)
@@ -236,10 +238,36 @@ class RuleBase:
         doubled = {n for n in names if names.count(n) > 1}
         if doubled:
             raise RuleBaseError(f"two variables of one name: {min(doubled)!r}")
+        for variable in self.inputs:
+            if variable.is_linear or variable.operators or variable.default is not None:
+                raise RuleBaseError(
+                    f"input {variable.name!r}: linear sets, operators and a default are for outputs"
+                )
+        for output in self.outputs:
+            self._check_output(output)
+
+    def _check_output(self, output: Variable) -> None:
+        """Sets must fit the defuzzification."""
+        by_centers = self.operators_of(output).defuzzification == "weighted-centers"
+        if output.is_linear and not by_centers:
+            raise RuleBaseError(f"output {output.name!r}: linear sets need weighted-centers")
+        for fuzzy_set in output.sets:
+            count = len(fuzzy_set.parameters)
+            if fuzzy_set.base == LINEAR and count != len(self.inputs) + 1:
+                raise RuleBaseError(
+                    f"set {fuzzy_set.name!r} of {output.name}: linear takes a coefficient for each "
+                    f"of the {len(self.inputs)} inputs and a constant, not {count} numbers"
+                )
+            if by_centers and fuzzy_set.base != LINEAR and not fuzzy_set.has_core:
+                raise RuleBaseError(
+                    f"set {fuzzy_set.name!r} of {output.name}: {fuzzy_set.shape} has no center, "
+                    "which weighted-centers needs"
+                )
 
     def _check_rule(self, rule: Rule) -> None:
-        for name, term in rule.conditions:
-            self.input(name).index(term)
+        for group in rule.groups:
+            for name, term in group:
+                self.input(name).index(term)
         for consequent in rule.consequents:
             self.output(consequent.output).index(consequent.set_name)
 
@@ -256,10 +284,10 @@ class RuleBase:
             return number, output.index(consequent.set_name)
 
         def ordered(rule: Rule) -> Rule:
-            conditions = tuple(sorted(rule.conditions, key=lambda c: inputs[c[0]]))
+            groups = [tuple(sorted(group, key=lambda c: inputs[c[0]])) for group in rule.groups]
             consequents = tuple(sorted(rule.consequents, key=place))
-            same = conditions == rule.conditions and consequents == rule.consequents
-            return rule if same else Rule(conditions, consequents)
+            same = tuple(groups) == rule.groups and consequents == rule.consequents
+            return rule if same else Rule(groups[0], consequents, tuple(groups[1:]))
 
         rules = tuple(map(ordered, self.rules))
         return rules if self.layout is None else self._as_table(rules, self.layout)
@@ -275,7 +303,7 @@ class RuleBase:
             raise RuleBaseError(
                 f"cells of the table must name every output once: {', '.join(self.output_names)}"
             )
-        cells = {frozenset(rule.conditions): rule for rule in rules}
+        cells: dict[frozenset[object], Rule] = {rule.key: rule for rule in rules}
         ordered = []
         for row in rows.set_names:
             for column in columns.set_names:
@@ -293,6 +321,17 @@ class RuleBase:
     def variables(self) -> tuple[Variable, ...]:
         """The inputs and then the outputs, in order."""
         return (*self.inputs, *self.outputs)
+
+    def operators_of(self, output: Variable) -> Operators:
+        """Operators by which the rules conclude about an output."""
+        return self.operators if output.operators is None else output.operators
+
+    def algebra(self) -> Iterator[str]:
+        """Operators in words, and after them those of each output that has its own."""
+        yield _in_words(self.operators)
+        for output in self.outputs:
+            if output.operators is not None:
+                yield f"of {output.name}: {_in_words(output.operators)}"
 
     @property
     def input_names(self) -> tuple[str, ...]:
@@ -326,6 +365,10 @@ class RuleBase:
     def uncovered(self, name: str) -> Iterator[tuple[float, float]]:
         """Intervals of an input, as (low, high), where every membership is zero."""
         return self.input(name).uncovered()
+
+
+def _in_words(operators: Operators) -> str:
+    return ", ".join(f"{key}: {word}" for key, word in operators.words().items())
 
 
 def remember_origin(rules: RuleBase, name_or_path: str) -> RuleBase:
@@ -370,8 +413,7 @@ def _html_list(rules: RuleBase) -> str:
     names = rules.output_names
     rows = []
     for number, rule in enumerate(rules.rules, 1):
-        conditions = dict(rule.conditions)
-        words = [str(number), *(conditions.get(name, "") for name in rules.input_names)]
+        words = [str(number), *(rule.asks(name) for name in rules.input_names)]
         rows.append([*words, *(_html_cell(rules, rule, [name]) for name in names)])
     conditions_of = (f"if {name}" for name in rules.input_names)
     heads = ["rule", *conditions_of, *(f"then {name}" for name in names)]

@@ -16,8 +16,9 @@ from fuzzytrack.fuzzy.cells import CellReader
 from fuzzytrack.fuzzy.loading import SCHEMA_FILE, loads_rulebase
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.numbers import written
+from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.reader import FORMAT_VERSION
-from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase, TableLayout
+from fuzzytrack.fuzzy.rulebase import Conditions, Consequent, Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.yamltree import Document, quoted
 
@@ -114,12 +115,8 @@ def _lines(rules: RuleBase) -> Iterator[str]:
         yield f"{role}:"
         for variable in variables:
             yield from _variable(variable)
-    operators = rules.operators
     yield ""
-    yield (
-        f"operators: {{and: {operators.conjunction}, or: {operators.disjunction}, "
-        f"defuzzification: {operators.defuzzification}}}"
-    )
+    yield f"operators: {_operators(rules.operators)}"
     yield ""
     yield "rules:"
     yield from _table(rules, rules.layout) if rules.layout else _list(rules)
@@ -147,10 +144,16 @@ def _variable(variable: Variable) -> Iterator[str]:
     yield f"    universe: {_universe(variable.universe)}"
     if variable.default is not None:
         yield f"    default: {written(variable.default)}"
+    if variable.operators is not None:
+        yield f"    operators: {_operators(variable.operators)}"
     yield "    sets:"
     width = max(len(word_text(name)) for name in variable.set_names)
     for fuzzy_set in variable.sets:
         yield f"      {word_text(fuzzy_set.name) + ':':<{width + 1}} {shape_text(fuzzy_set)}"
+
+
+def _operators(operators: Operators) -> str:
+    return f"{{{', '.join(f'{key}: {word}' for key, word in operators.words().items())}}}"
 
 
 def _universe(universe: Universe) -> str:
@@ -191,14 +194,18 @@ def _table(rules: RuleBase, layout: TableLayout) -> Iterator[str]:
 
 
 def _list(rules: RuleBase) -> Iterator[str]:
-    conditions = [
-        ", ".join(f"{word_text(name)}: {word_text(term)}" for name, term in rule.conditions)
-        for rule in rules.rules
-    ]
-    width = max(map(len, conditions)) + len("{},")
+    conditions = [_group(rule.conditions) for rule in rules.rules]
+    width = max(map(len, conditions)) + len(",")
     for rule, condition in zip(rules.rules, conditions, strict=True):
-        either = f"{{{condition}}},"
+        either = f"{condition},"
+        if rule.alternatives:
+            either += f" or: [{', '.join(map(_group, rule.alternatives))}],"
         yield f"  - {{if: {either:<{width}} then: {consequents_text(rule.consequents)}}}"
+
+
+def _group(conditions: Conditions) -> str:
+    pairs = (f"{word_text(name)}: {word_text(term)}" for name, term in conditions)
+    return f"{{{', '.join(pairs)}}}"
 
 
 # -------------------------------------------------------------------- cells

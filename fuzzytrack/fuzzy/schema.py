@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from fuzzytrack.fuzzy.membership import SHAPES
+from fuzzytrack.fuzzy.hedges import HEDGES
+from fuzzytrack.fuzzy.membership import MAX_PARAMETERS, SHAPES
+from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DEFUZZIFICATIONS, DISJUNCTIONS
 from fuzzytrack.fuzzy.reader import (
     FORMAT_VERSION,
     MAX_NAME,
@@ -13,9 +15,7 @@ from fuzzytrack.fuzzy.reader import (
     VARIABLE_NAME,
 )
 from fuzzytrack.fuzzy.rulebase import (
-    CONJUNCTIONS,
-    DEFUZZIFICATIONS,
-    DISJUNCTIONS,
+    MAX_ALTERNATIVES,
     MAX_INPUTS,
     MAX_OUTPUTS,
     MAX_RULES,
@@ -129,6 +129,7 @@ def _variable(output: bool = False) -> Schema:
         },
     }
     if output:
+        properties["operators"] = _operators()
         properties["default"] = _number(
             "Value where no rule fires, within the universe; NaN and a warning without it."
         )
@@ -140,12 +141,15 @@ def _operators() -> Schema:
         "and": ("Conjunction, also of a rule with its consequents.", CONJUNCTIONS),
         "or": ("Disjunction of the rules; sum is the plain sum.", DISJUNCTIONS),
         "defuzzification": ("From the fuzzy output to one value.", DEFUZZIFICATIONS),
+        "implication": ("From a rule to the set it concludes; the word of and.", CONJUNCTIONS),
+        "weighting": ("Confidence and the strength of a rule; the word of and.", CONJUNCTIONS),
+        "alternatives": ("OR inside of one rule; max unless given.", DISJUNCTIONS),
     }
     properties = {
         key: {"description": description, "enum": list(allowed)}
         for key, (description, allowed) in words.items()
     }
-    return _closed("The algebra of the rules.", properties, tuple(words))
+    return _closed("The algebra of the rules.", properties, tuple(words)[:3])
 
 
 def _definitions() -> Schema:
@@ -153,6 +157,13 @@ def _definitions() -> Schema:
         "universe": _universe(),
         "set": {
             **_closed("A membership shape.", {name: _shape(name) for name in SHAPES}, ()),
+            "patternProperties": {
+                f"^({'|'.join(HEDGES)}) ": {
+                    "description": "A shape after up to three hedges.",
+                    "type": "array",
+                    "items": {"type": "number"},
+                }
+            },
             "maxProperties": 1,
         },
         "word": {
@@ -227,11 +238,14 @@ def _universe() -> Schema:
 def _shape(name: str) -> Schema:
     shape = SHAPES[name]
     count = len(shape.parameters)
+    more: Schema = {"items": False}
+    if shape.repeats:
+        more = {"items": {"type": "number"}, "maxItems": MAX_PARAMETERS}
     return {
         "description": f"{name}: {', '.join(shape.parameters)}; {shape.requirement}",
         "type": "array",
         "prefixItems": [_number(parameter) for parameter in shape.parameters],
-        "items": False,
+        **more,
         "minItems": count,
     }
 
@@ -260,7 +274,17 @@ def _list() -> Schema:
     consequents = _reference("consequents")
     every = _closed(
         "If every condition holds.",
-        {"if": _reference("conditions"), "then": consequents},
+        {
+            "if": _reference("conditions"),
+            "or": {
+                "description": "Further conditions: the rule fires if those of any of them hold.",
+                "type": "array",
+                "minItems": 1,
+                "maxItems": MAX_ALTERNATIVES - 1,
+                "items": _reference("conditions"),
+            },
+            "then": consequents,
+        },
         ("if", "then"),
     )
     either = _closed(

@@ -258,8 +258,11 @@ def _rename_in_conditions(edits: TextEdits, shared: Sequence[str], old: str, new
     assert isinstance(rules, ListNode)
     for rule in rules.items:
         entries = edits.document.entries(rule, "a rule")
-        conditions = entries.get("if") or entries["if any"]
-        for name, (_, word) in edits.document.entries(conditions[1], "if").items():
+        conditions = [(entries.get("if") or entries["if any"])[1]]
+        if "or" in entries:
+            conditions += edits.document.items(entries["or"][1], "or")
+        words = [pair for node in conditions for pair in edits.document.entries(node, "if").items()]
+        for name, (_, word) in words:
             if name in shared and edits.document.text(word, "set") == old:
                 _rename_word(edits, word, old, new)
 
@@ -331,7 +334,7 @@ def _with_sets(
 
 def _has(rule: Rule, name: str, set_name: str) -> bool:
     """Whether a rule has a condition."""
-    return (name, set_name) in rule.conditions
+    return any((name, set_name) in group for group in rule.groups)
 
 
 def _uses(rule: Rule, names: Sequence[str], set_name: str) -> bool:
@@ -343,22 +346,29 @@ def _uses(rule: Rule, names: Sequence[str], set_name: str) -> bool:
 
 def _conditioned(rule: Rule, name: str, set_name: str) -> Rule:
     """The rule with another set of an input."""
-    conditions = tuple((n, set_name if n == name else term) for n, term in rule.conditions)
-    return replace(rule, conditions=conditions)
+    first, *others = (
+        tuple((n, set_name if n == name else term) for n, term in group) for group in rule.groups
+    )
+    return replace(rule, conditions=first, alternatives=tuple(others))
 
 
 def _renamed_rule(rule: Rule, names: Sequence[str], old: str, new: str) -> Rule:
-    return Rule(
-        tuple((n, new if n in names and term == old else term) for n, term in rule.conditions),
-        tuple(
-            replace(c, set_name=new) if c.output in names and c.set_name == old else c
-            for c in rule.consequents
-        ),
+    first, *others = (
+        tuple((n, new if n in names and term == old else term) for n, term in group)
+        for group in rule.groups
     )
+    consequents = tuple(
+        replace(c, set_name=new) if c.output in names and c.set_name == old else c
+        for c in rule.consequents
+    )
+    return Rule(first, consequents, tuple(others))
 
 
 def _in_use(variable: str, set_name: str, users: Sequence[Rule]) -> str:
-    cells = [", ".join(f"{name}={term}" for name, term in rule.conditions) for rule in users]
+    cells = [
+        " or ".join(", ".join(f"{n}={term}" for n, term in group) for group in rule.groups)
+        for rule in users
+    ]
     more = f"; and {len(cells) - _NAMED} more" if len(cells) > _NAMED else ""
     return (
         f"the set {quoted(set_name)} of {variable} is used by the rules for "

@@ -125,8 +125,14 @@ class FuzzySystem:
         if not self.fuzzification.is_singleton:
             for variable in rules.inputs:
                 self.fuzzification.check(variable)
-            algebra = (rules.operators.conjunction, rules.operators.disjunction)
-            if algebra == ("min", "sum") and method != "relation":
+            algebras = [rules.operators_of(output) for output in rules.outputs]
+            if not all(o.is_classical for o in (rules.operators, *algebras)):
+                raise ValueError(
+                    "fuzzification: non-singleton inputs need product or min for and, "
+                    "implication and weighting, and sum or max for or"
+                )
+            mixed = any((o.conjunction, o.disjunction) == ("min", "sum") for o in algebras)
+            if mixed and method != "relation":
                 raise ValueError(
                     "method: with non-singleton inputs, min and sum do not factorize; "
                     "use method='relation'"
@@ -254,7 +260,7 @@ class FuzzySystem:
     def _evaluate_exact(self, points: Array) -> dict[str, Array]:
         strength = self.strengths(points)
         return {
-            name: self._crisp(name, self._conclusions[name].infer(strength))
+            name: self._crisp(name, self._conclusions[name].infer(strength), points)
             for name in self.rules.output_names
         }
 
@@ -277,16 +283,22 @@ class FuzzySystem:
                         for row in range(len(points))
                     ]
                 )
-            result[name] = self._crisp(name, fuzzy)
+            nearest = [
+                v.universe.values[v.universe.nearest(points[:, k])] for k, v in enumerate(inputs)
+            ]
+            result[name] = self._crisp(name, fuzzy, np.stack(nearest, axis=1))
         return result
 
     def _evaluate_table(self, points: Array) -> dict[str, Array]:
         return self._table(points)
 
-    def _crisp(self, name: str, fuzzy: Array) -> Array:
-        operators = self.rules.operators
+    def _crisp(self, name: str, fuzzy: Array, points: Array) -> Array:
         output = self.rules.output(name)
-        y, _ = output_grid(operators, output)
+        operators = self.rules.operators_of(output)
+        if output.is_linear:
+            y = output.values_of_sets(points)
+        else:
+            y, _ = output_grid(operators, output)
         values = defuzzify(operators.defuzzification, y, fuzzy)
         if output.default is None:
             return values
@@ -322,7 +334,7 @@ class FuzzySystem:
             No NaN.
         """
         about = {
-            rule.conditions
+            rule.groups
             for rule in self.rules.rules
             for c in rule.consequents
             if c.output == output and c.confidence > 0
@@ -332,11 +344,12 @@ class FuzzySystem:
         silent = all(
             s == 0.0
             for s, rule in zip(strength, self.rules.rules, strict=True)
-            if rule.conditions in about
+            if rule.groups in about
         )
         return silent and any(
             all(self.rules.input(name).is_within(term, value[name]) for name, term in conditions)
-            for conditions in about
+            for groups in about
+            for conditions in groups
         )
 
     def explain(self, /, **inputs: float) -> list[FiredRule]:

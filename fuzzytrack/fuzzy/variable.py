@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import RuleBaseError
-from fuzzytrack.fuzzy.membership import TAILED, FuzzySet
+from fuzzytrack.fuzzy.membership import LINEAR, FuzzySet
+from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.html_reprs import block, curves
 from fuzzytrack.reprs import summary
 
@@ -124,6 +125,9 @@ class Variable:
         warning.
     label, unit : str
         For axes and tables.
+    operators : Operators or None
+        For an output, operators of its own by which its conclusions are joined, where they differ
+        from those of the rule base; its AND of conditions is the rule base's.
 
     Raises
     ------
@@ -137,6 +141,7 @@ class Variable:
     default: float | None = None
     label: str = ""
     unit: str = ""
+    operators: Operators | None = None
     _index: dict[str, int] = field(init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
@@ -198,7 +203,12 @@ class Variable:
             In ascending order; equal where only one point has no membership.
         """
         end, end_covered = self.universe.low, False
-        supports = [s.support() for s in self.sets if set_names is None or s.name in set_names]
+        supports = [
+            stretch
+            for s in self.sets
+            if set_names is None or s.name in set_names
+            for stretch in s.positive()
+        ]
         for low, high, with_low, with_high in sorted(supports, key=lambda s: (s[0], not s[2])):
             if low > self.universe.high:
                 break
@@ -212,11 +222,10 @@ class Variable:
     def is_within(self, set_name: str, x: float) -> bool:
         """Whether a set is above zero at `x`, or would be if floats were smaller."""
         fuzzy_set = self.sets[self.index(set_name)]
-        low, high, with_low, with_high = fuzzy_set.support()
-        if fuzzy_set.shape in TAILED:
+        if fuzzy_set.is_tailed:
             return True
         x = min(max(x, self.universe.low), self.universe.high)
-        return low < x < high or (x == low and with_low) or (x == high and with_high)
+        return any(x in stretch for stretch in fuzzy_set.positive())
 
     def memberships(self, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Grades of every set, shape ``(n_sets, *x.shape)``; on the universe's grid without `x`."""
@@ -264,6 +273,29 @@ class Variable:
         # An even point that rounding has put beside a corner is left out.
         apart = np.abs(even[:, None] - ends).min(axis=1) > 1e-9 * (high - low)
         return np.union1d(ends, even[apart])
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether some sets are linear functions of the inputs."""
+        return any(s.base == LINEAR for s in self.sets)
+
+    def values_of_sets(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Centers of the sets at points of the inputs, those of linear sets being their values.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, n_inputs)
+
+        Returns
+        -------
+        ndarray, shape (n, n_sets)
+        """
+        values = np.tile(self.centers(), (len(points), 1))
+        for column, fuzzy_set in enumerate(self.sets):
+            if fuzzy_set.base == LINEAR:
+                *slopes, constant = fuzzy_set.parameters
+                values[:, column] = points @ np.array(slopes) + constant
+        return values
 
     def centers(self) -> NDArray[np.float64]:
         """Centers of the sets, shape (n_sets,)."""

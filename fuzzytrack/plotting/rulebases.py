@@ -170,11 +170,10 @@ def _table(ax: Axes, base: RuleBase, layout: TableLayout, output: str) -> None:
 def _list(ax: Axes, base: RuleBase) -> None:
     shown = base.rules[:SHOWN]
     names = [*base.input_names, *base.output_names]
-    conditions = [dict(rule.conditions) for rule in shown]
     rows = [
-        [(asked.get(name, "·"), None) for name in base.input_names]
+        [(rule.asks(name, "·"), None) for name in base.input_names]
         + [_cell(base, rule, name) for name in base.output_names]
-        for asked, rule in zip(conditions, shown, strict=True)
+        for rule in shown
     ]
     left = len(base.rules) - len(shown)
     if left:

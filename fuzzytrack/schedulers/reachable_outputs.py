@@ -9,6 +9,7 @@ import numpy as np
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.coverage import find_hole
+from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.rulebase import RuleBase
 
 __all__ = ["REACHES", "output_values"]
@@ -56,6 +57,11 @@ def output_values(rules: RuleBase, names: tuple[str, ...], reach: str) -> tuple[
 def _values(rules: RuleBase, name: str) -> tuple[float, ...]:
     """Values of an output: a few in its universe, its limits among them; its default if used."""
     output = rules.output(name)
+    if output.is_linear:
+        raise RuleBaseError(
+            f"{rules.name}: {name} has linear sets, whose values have no bounds; what its rules "
+            "reach cannot be certified"
+        )
     inside = tuple(np.linspace(output.universe.low, output.universe.high, _TRIED).tolist())
     if output.default is None or find_hole(rules, name) is None:
         return inside
@@ -64,14 +70,17 @@ def _values(rules: RuleBase, name: str) -> tuple[float, ...]:
 
 def _rule_conclusions(rules: RuleBase, names: tuple[str, ...]) -> Array:
     """What each rule concludes about the outputs, shape (n_rules, n_outputs)."""
-    operators = rules.operators
-    algebra = (operators.conjunction, operators.disjunction, operators.defuzzification)
-    if algebra != ("product", "sum", "weighted-centers"):
+    algebras = {rules.operators_of(rules.output(name)) for name in names}
+    if algebras != {Operators("product", "sum", "weighted-centers")}:
+        algebra = dict.fromkeys(word for o in algebras for word in o.words().values())
         raise RuleBaseError(
             "reach 'rules' needs product, sum and weighted-centers, where every output is a mean "
             f"of what the rules conclude; {rules.name} has {', '.join(algebra)}: "
             "use reach 'universe'"
         )
+    linear = [name for name in names if rules.output(name).is_linear]
+    if linear:
+        raise RuleBaseError(f"reach 'rules' needs sets with centers; {linear[0]} has linear ones")
     rows = []
     for rule in rules.rules:
         totals, row = [], []

@@ -198,13 +198,13 @@ def _written(rules: RuleBase) -> tuple[int, int] | None:
         return None
     has = np.zeros(shape, dtype=bool)
     for rule in rules.rules:
-        conditions = dict(rule.conditions)
-        has[
-            tuple(
-                v.index(conditions[v.name]) if v.name in conditions else slice(None)
-                for v in rules.inputs
-            )
-        ] = True
+        for conditions in map(dict, rule.groups):
+            has[
+                tuple(
+                    v.index(conditions[v.name]) if v.name in conditions else slice(None)
+                    for v in rules.inputs
+                )
+            ] = True
     return int(has.sum()), cells
 
 

@@ -72,7 +72,7 @@ def confidence(
     if output is not None:
         rules.output(output)
     key = frozenset(where.items())
-    found = [rule for rule in rules.rules if frozenset(rule.conditions) == key]
+    found = [rule for rule in rules.rules if rule.key == key]
     then = [
         replace(c, confidence=confidence) if output in (None, c.output) else c
         for rule in found
@@ -332,7 +332,7 @@ def _mirrored(changed: EditedText, where: Mapping[str, str]) -> EditedText:
     if mirror == where:
         return changed
     key = frozenset(where.items())
-    (rule,) = (r for r in changed.rules.rules if frozenset(r.conditions) == key)
+    (rule,) = (r for r in changed.rules.rules if r.key == key)
     return set_consequents(changed, mirror, rule.consequents)
 
 

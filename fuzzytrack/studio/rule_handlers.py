@@ -6,7 +6,6 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
@@ -15,6 +14,7 @@ from fuzzytrack.studio.folder import Folder
 from fuzzytrack.studio.handlers import Handler
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.state import cell_place, rulebase_state, shared_sets
+from fuzzytrack.studio.symmetry import DRAWN
 from fuzzytrack.studio.world_handlers import scenario_state
 
 __all__ = ["HANDLERS", "changed", "listed_files", "state_of"]
@@ -149,7 +149,7 @@ def set_shape(page: Page, given: Arguments) -> Answer:
         "symmetric": given.flag("symmetric"),
     }
     if "shape" in given:
-        arguments["shape"] = given.choice("shape", tuple(SHAPES))
+        arguments["shape"] = given.choice("shape", DRAWN)
     return _edit(page, "shape", arguments, page.gesture(given.flag("draft")))
 
 
@@ -159,7 +159,7 @@ def set_shapes(page: Page, given: Arguments) -> Answer:
     for each in given.objects("shapes"):
         shapes.append({"set": each.text("set"), "parameters": each.numbers("parameters")})
         if "shape" in each:
-            shapes[-1]["shape"] = each.choice("shape", tuple(SHAPES))
+            shapes[-1]["shape"] = each.choice("shape", DRAWN)
     arguments = {
         "variable": given.text("variable"),
         "shapes": shapes,
@@ -188,7 +188,7 @@ def add_set(page: Page, given: Arguments) -> Answer:
     """Add a set, and its column or row."""
     arguments = {
         **_set_named(given),
-        "shape": given.choice("shape", tuple(SHAPES)),
+        "shape": given.choice("shape", DRAWN),
         "parameters": given.numbers("parameters"),
     }
     if "like" in given:

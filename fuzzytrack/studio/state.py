@@ -12,6 +12,7 @@ from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.saving import cell_text, consequents_text
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
+from fuzzytrack.studio.symmetry import DRAWN
 from fuzzytrack.yamltree import Document
 from fuzzytrack.yamltree import Mapping as MappingNode
 
@@ -43,7 +44,7 @@ def rulebase_state(rules: RuleBase, shared: Mapping[str, Sequence[str]]) -> dict
             for word, (attribute, allowed) in OPERATORS.items()
         },
         "rules": _list(rules) if rules.layout is None else _table(rules, rules.layout),
-        "shapes": {name: list(shape.parameters) for name, shape in SHAPES.items()},
+        "shapes": {name: list(SHAPES[name].parameters) for name in DRAWN},
         "gains": gains is not None,
         "surfaces": [
             *rules.output_names,

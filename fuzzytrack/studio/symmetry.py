@@ -10,7 +10,7 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.yamltree import quoted
 
-__all__ = ["mirrored_conditions", "mirrored_name", "mirrored_shape", "symmetric_shape"]
+__all__ = ["DRAWN", "mirrored_conditions", "mirrored_name", "mirrored_shape", "symmetric_shape"]
 
 Numbers = tuple[float, ...]
 
@@ -35,6 +35,10 @@ _MIRRORS: dict[str, tuple[str, Callable[[Numbers, float], Numbers]]] = {
     "gbellmf": ("gbellmf", lambda p, twice: (p[0], p[1], twice - p[2] + 0.0)),
     "sigmf": ("sigmf", lambda p, twice: (twice - p[0] + 0.0, -p[1])),
 }
+
+
+#: Shapes that a page draws, and whose mirror images are known.
+DRAWN = tuple(_MIRRORS)
 
 
 def mirrored_name(variable: Variable, set_name: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from fuzzytrack.fuzzy.loading import loads_rulebase
-from fuzzytrack.fuzzy.membership import SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
 from fuzzytrack.fuzzy.numbers import NumberPlaces, Place, Span, replaced
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
@@ -19,7 +19,12 @@ from fuzzytrack.tuning.parameters import Numbers, Parameter, Space
 __all__ = ["RuleBaseNumbers", "rulebase_numbers"]
 
 # Parameters of shapes that are places on the axis; in shapes that are not listed, all are.
-_PLACES = {"gaussmf": (0,), "gauss2mf": (0, 2), "gbellmf": (2,), "sigmf": (0,)}
+_PLACES = {
+    "gaussmf": (0,), "gauss2mf": (0, 2), "gbellmf": (2,), "sigmf": (0,), "dsigmf": (0, 2),
+    "psigmf": (0, 2), "cosine": (0,), "spike": (0,),
+}  # fmt: skip
+# Shapes of any number of parameters, which stay as they are.
+_FIXED = ("discrete", LINEAR)
 # Scheduler settings that are shares, from 0 to 1; others are positive.
 _SHARES = frozenset({"rho"})
 # A positive number may become so many times smaller or larger.
@@ -162,10 +167,10 @@ def _corners(group: _Group, numbers: NumberPlaces) -> Iterator[_Found]:
     """Places on the axis where sets have a corner, each once, in rising order."""
     low = min(v.universe.low for v in group.variables)
     high = max(v.universe.high for v in group.variables)
-    sets = group.variables[0].sets
+    sets = [s for s in group.variables[0].sets if s.base not in _FIXED]
     at: dict[float, list[tuple[FuzzySet, int]]] = {}
     for fuzzy_set in sets:
-        for index in _PLACES.get(fuzzy_set.shape, range(len(fuzzy_set.parameters))):
+        for index in _PLACES.get(fuzzy_set.base, range(len(fuzzy_set.parameters))):
             at.setdefault(fuzzy_set.parameters[index], []).append((fuzzy_set, index))
     # A universe of magnitudes goes on beginning at 0.
     ends = {end for end in (low, high) if end != 0.0}
@@ -231,9 +236,11 @@ def _corner_name(
 def _widths(group: _Group, numbers: NumberPlaces) -> Iterator[_Found]:
     """Widths and slopes of sets, which have no place on the axis."""
     for fuzzy_set in group.variables[0].sets:
+        if fuzzy_set.base in _FIXED:
+            continue
         names = SHAPES[fuzzy_set.shape].parameters
         for index in range(len(names)):
-            if index in _PLACES.get(fuzzy_set.shape, range(len(names))):
+            if index in _PLACES.get(fuzzy_set.base, range(len(names))):
                 continue
             value = fuzzy_set.parameters[index]
             name = f"{group.variables[0].name}.{fuzzy_set.name}.{names[index]}"

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from fuzzytrack.fuzzy.defuzzification import DEFUZZIFIERS, defuzzify
-from fuzzytrack.fuzzy.rulebase import DEFUZZIFICATIONS
+from fuzzytrack.fuzzy.operators import DEFUZZIFICATIONS
 
 Y = np.linspace(-1.0, 4.0, 41)
 RANDOM = np.random.default_rng(11)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.kernel import infer_function
-from fuzzytrack.fuzzy.membership import SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
 from fuzzytrack.fuzzy.rulebase import Consequent, Operators, Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
@@ -79,10 +79,22 @@ EXAMPLES = {
     "zmf": (-0.4, 0.3),
     "pimf": (-0.8, -0.1, 0.2, 0.9),
     "singleton": (0.25,),
+    "linsmf": (-0.4, 0.3),
+    "linzmf": (-0.4, 0.3),
+    "dsigmf": (-0.4, 6.0, 0.3, 9.0),
+    "psigmf": (-0.4, 6.0, 0.3, -9.0),
+    "discrete": (-0.5, 0.25, -0.1, 0.75, 0.2, 0.5, 0.4, 1.0, 0.9, 0.125),
+    "cosine": (0.1, 1.5),
+    "spike": (0.1, 1.5),
+    "concave": (0.5, -0.3),
+    "arc": (-0.3, 0.5),
+    "ellipse": (-0.3, 0.5),
+    "not trimf": (-0.4, 0.1, 0.8),
+    "very seldom gaussmf": (0.2, 0.3),
 }
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", EXAMPLES)
 def test_every_shape_is_written_out(shape):
     sets = (FuzzySet("always", "trapmf", (-1, -1, 1, 1)), FuzzySet("this", shape, EXAMPLES[shape]))
     x = Variable("x", Universe(-1, 1, 9), sets)
@@ -93,6 +105,10 @@ def test_every_shape_is_written_out(shape):
     )
     base = RuleBase("shapes", (x,), (y,), rules)
     expect_equal(ft.FuzzySystem(base), np.array([*points_of(base).tolist(), [0.25]]))
+
+
+def test_every_shape_has_an_example():
+    assert set(SHAPES) - {LINEAR} <= set(EXAMPLES)
 
 
 def sparse_base(default=None, count=3):

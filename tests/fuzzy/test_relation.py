@@ -9,8 +9,9 @@ from builders import ALGEBRAS, asymmetric_base, is_set, random_points, rule, tri
 
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
 from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.operators import DEFUZZIFICATIONS, Operators
 from fuzzytrack.fuzzy.relation import MAX_ELEMENTS, compose, relation
-from fuzzytrack.fuzzy.rulebase import DEFUZZIFICATIONS, Operators, RuleBase
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 

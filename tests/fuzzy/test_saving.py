@@ -18,10 +18,8 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy import saving
 from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, rulebase_path, shipped_rulebases
 from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DEFUZZIFICATIONS, DISJUNCTIONS
 from fuzzytrack.fuzzy.rulebase import (
-    CONJUNCTIONS,
-    DEFUZZIFICATIONS,
-    DISJUNCTIONS,
     Consequent,
     Operators,
     Rule,

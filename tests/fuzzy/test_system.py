@@ -25,7 +25,8 @@ from fuzzytrack.errors import NoRuleFiresWarning, RuleBaseError
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
 from fuzzytrack.fuzzy.kernel import infer_function
 from fuzzytrack.fuzzy.membership import FuzzySet
-from fuzzytrack.fuzzy.rulebase import DEFUZZIFICATIONS, Operators, RuleBase
+from fuzzytrack.fuzzy.operators import DEFUZZIFICATIONS, Operators
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import METHODS, FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase
+from fuzzytrack.fuzzy.norms import T_NORMS
 from fuzzytrack.fuzzy.system import FuzzySystem
 
 
@@ -19,7 +20,7 @@ def test_a_new_page_has_all_that_it_shows(page):
     assert set(cell["consequents"]) == {"stiffness", "damping"}
     assert (cell["weight"], rules["gains"]) == (1.0, True)
     assert rules["surfaces"] == ["stiffness", "damping", "alpha", "beta"]
-    assert rules["operators"]["and"] == {"value": "product", "choices": ["product", "min"]}
+    assert rules["operators"]["and"] == {"value": "product", "choices": list(T_NORMS)}
     assert found["scenario"]["scenario"]["axes"] == 2
     assert {"turn", "llinas-m1"} <= {each["name"] for each in found["scenarios"]}
     assert "stiffness-damping" in found["shipped"]

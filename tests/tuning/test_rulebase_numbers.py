@@ -111,3 +111,16 @@ def test_other_shapes_and_options():
     assert candidates.tracker(numbers).start_mode == "one-point"
     with pytest.raises(ValueError, match="unknown parameter 'stat'"):
         rulebase_numbers(text, "x", {"stat": "one-point"}, ["lag"]).tracker(numbers)
+
+
+def test_shapes_of_any_number_of_parameters_stay_as_they_are():
+    text = rulebase_path("omega-schedule").read_text(encoding="utf-8")
+    rules = load_rulebase("omega-schedule")
+    first = rules.inputs[0].sets[0]
+    line = next(line for line in text.splitlines() if f"{first.name}:" in line and "{" in line)
+    shape = line[line.index("{") : line.index("}") + 1]
+    low, high = rules.inputs[0].universe.low, rules.inputs[0].universe.high
+    points = f"{{discrete: [{low}, 1, {(low + high) / 2}, 0.5, {high}, 0]}}"
+    changed = rulebase_numbers(text.replace(shape, points, 1), "t", {}, None).space.parameters
+    assert any(p.name.startswith("lag.") for p in changed)
+    assert not any(p.name.startswith(f"lag.{first.name}") for p in changed)

@@ -46,7 +46,8 @@ def columns(rules: RuleBase) -> Columns:
         If the rule base is another.
     """
     operators = rules.operators
-    if (operators.conjunction, operators.disjunction) != ("product", "sum"):
+    algebras = {(o.conjunction, o.disjunction) for o in map(rules.operators_of, rules.outputs)}
+    if algebras != {("product", "sum")} or any(rule.alternatives for rule in rules.rules):
         raise ValueError(
             f"rules: {rules.name} must have the operators product and sum; it has "
             f"{operators.conjunction} and {operators.disjunction}"
