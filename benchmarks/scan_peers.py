@@ -22,6 +22,7 @@ from fuzzytrack.scan.scan import Scan
 from fuzzytrack.scan.scanners.catalog import as_scanner
 from fuzzytrack.scan.scanners.loading import shipped_scanners
 from fuzzytrack.scan.update.base import updates
+from fuzzytrack.trackers.catalog import as_lane_tracker
 
 __all__ = [
     "CONFIGURATIONS", "Followed", "Peer", "Setting", "Steps", "followed", "norfair",
@@ -171,7 +172,7 @@ def shipped(name: str, tracker: str | None = None) -> Peer:
 # -------------------------------------------------------------------- Stone Soup
 
 
-def stonesoup(association: str) -> Peer:
+def stonesoup(association: str, tracker: str | None = None) -> Peer:
     """Stone Soup with the parts of its own examples: "GNN", "JPDA" or "JPDA by propagation".
 
     A Kalman filter for a target of nearly constant velocity; global nearest neighbor by Mahalanobis
@@ -179,11 +180,15 @@ def stonesoup(association: str) -> Peer:
     loopy belief propagation, for which the number of tracks does not matter; tracks from several
     plots, held by an initiator of their own. Without noise in bearing all plots have the same
     noise, and are searched in a KD-tree.
+
+    With the text of a `tracker`, predictor, updater and first states are those of this package's
+    plug-in, with the same standard deviations.
     """
 
     def follow(scans: Sequence[Scan], setting: Setting) -> Steps:
-        detections = _detections(scans, setting)
-        tracker = _tracker(association, detections, setting)
+        places = 6 if tracker is not None and as_lane_tracker(tracker).uses_acceleration else 4
+        detections = _detections(scans, setting, places)
+        found = _tracker(association, detections, setting, tracker)
         numbers: dict[str, int] = {}
 
         def shown(step: Any) -> Shown:
@@ -193,16 +198,21 @@ def stonesoup(association: str) -> Peer:
                 for name, place in tracks
             })  # fmt: skip
 
-        return Steps(iter(tracker), shown)
+        return Steps(iter(found), shown)
 
     return follow
 
 
-def _detections(scans: Sequence[Scan], setting: Setting) -> list[tuple[datetime, set[Any]]]:
+def _detections(
+    scans: Sequence[Scan], setting: Setting, places: int
+) -> list[tuple[datetime, set[Any]]]:
+    """Times and detections, for states of so many places that begin with x, vx, y, vy."""
     detection = need("stonesoup.types.detection", "stonesoup").Detection
     linear = need("stonesoup.models.measurement.linear", "stonesoup").LinearGaussian
     # Plots of equal noise share a model, for which the KD-tree asks.
-    model = functools.cache(lambda noise: linear(4, (0, 2), np.frombuffer(noise).reshape(2, 2)))
+    model = functools.cache(
+        lambda noise: linear(places, (0, 2), np.frombuffer(noise).reshape(2, 2))
+    )
     found = []
     for scan in scans:
         when = _BEGIN + timedelta(seconds=float(scan.time))
@@ -221,8 +231,32 @@ def _detections(scans: Sequence[Scan], setting: Setting) -> list[tuple[datetime,
 
 
 def _tracker(
-    association: str, detections: list[tuple[datetime, set[Any]]], setting: Setting
+    association: str,
+    detections: list[tuple[datetime, set[Any]]],
+    setting: Setting,
+    text: str | None,
 ) -> Any:
+    parts = _kalman(detections, setting) if text is None else _plugged_in(text, setting)
+    predictor, updater, first = parts
+    nearest = _nearest(predictor, updater, setting)
+    deleter = need("stonesoup.deleter.time", "stonesoup").UpdateTimeStepsDeleter
+    initiator = need("stonesoup.initiator.simple", "stonesoup").MultiMeasurementInitiator(
+        prior_state=None, deleter=deleter(setting.tentative_misses), data_associator=nearest,
+        updater=updater, min_points=setting.hits, initiator=first,
+    )  # fmt: skip
+    trackers = need("stonesoup.tracker.simple", "stonesoup")
+    kind, associator = trackers.MultiTargetTracker, nearest
+    if association != "GNN":
+        kind = trackers.MultiTargetMixtureTracker
+        associator = _joint(association, predictor, updater, setting)
+    return kind(
+        initiator=initiator, deleter=deleter(setting.misses), detector=detections,
+        data_associator=associator, updater=updater,
+    )  # fmt: skip
+
+
+def _kalman(detections: list[tuple[datetime, set[Any]]], setting: Setting) -> tuple[Any, Any, Any]:
+    """Predictor, updater and initiator of Stone Soup."""
     models = need("stonesoup.models.transition.linear", "stonesoup")
     white = setting.acceleration**2 * setting.period
     each = models.ConstantVelocity(white)
@@ -237,24 +271,26 @@ def _tracker(
         )
     predictor = need("stonesoup.predictor.kalman", "stonesoup").KalmanPredictor(model)
     updater = need("stonesoup.updater.kalman", "stonesoup").KalmanUpdater(None)
-    nearest = _nearest(predictor, updater, setting)
-    deleter = need("stonesoup.deleter.time", "stonesoup").UpdateTimeStepsDeleter
     start = need("stonesoup.types.state", "stonesoup").GaussianState(
         [[0.0]] * 4, np.diag([0.0, setting.speed**2] * 2)
     )
-    initiator = need("stonesoup.initiator.simple", "stonesoup").MultiMeasurementInitiator(
-        prior_state=start, deleter=deleter(setting.tentative_misses), data_associator=nearest,
-        updater=updater, min_points=setting.hits,
-    )  # fmt: skip
-    trackers = need("stonesoup.tracker.simple", "stonesoup")
-    kind, associator = trackers.MultiTargetTracker, nearest
-    if association != "GNN":
-        kind = trackers.MultiTargetMixtureTracker
-        associator = _joint(association, predictor, updater, setting)
-    return kind(
-        initiator=initiator, deleter=deleter(setting.misses), detector=detections,
-        data_associator=associator, updater=updater,
-    )  # fmt: skip
+    first = need("stonesoup.initiator.simple", "stonesoup").SimpleMeasurementInitiator(start, None)
+    return predictor, updater, first
+
+
+def _plugged_in(text: str, setting: Setting) -> tuple[Any, Any, Any]:
+    """Predictor, updater and initiator of this package's plug-in."""
+    plugin = need("fuzzytrack.interop.stonesoup", "stonesoup")
+    common = {"tracker": text, "position_mapping": (0, 2), "velocity_mapping": (1, 3)}
+    motion: dict[str, float] = {}
+    if as_lane_tracker(text).uses_acceleration:
+        common["acceleration_mapping"] = (4, 5)
+        motion["acceleration_deviation"] = setting.acceleration
+    return (
+        plugin.GainScheduledPredictor(**common, acceleration_noise=setting.acceleration),
+        plugin.GainScheduledUpdater(**common),
+        plugin.GainScheduledInitiator(**common, **motion, velocity_deviation=setting.speed),
+    )
 
 
 def _nearest(predictor: Any, updater: Any, setting: Setting) -> Any:

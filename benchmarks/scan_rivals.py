@@ -19,7 +19,7 @@ import argparse
 import math
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -105,11 +105,16 @@ def kept_or_followed(peer: Peer, world: SimulatedScans, file: Path | None) -> Fo
     return found
 
 
-def measured(peers: Mapping[str, Peer], seeds: int, keep: Path | None) -> dict[str, list[Judgment]]:
+def judged_by_seed(
+    peers: Mapping[str, Peer],
+    seeds: int,
+    keep: Path | None = None,
+    scene: Callable[[int], SimulatedScans] | None = None,
+) -> dict[str, list[Judgment]]:
     figures: dict[str, list[Judgment]] = {name: [] for name in peers}
     with progress("scanning") as watch:
         for seed in range(seeds):
-            world = traffic(seed)
+            world = (scene or traffic)(seed)
             times, truth = [scan.time for scan in world.scans], paths(world)
             for name, peer in peers.items():
                 file = keep / f"{file_name(name)}-{seed}.npz" if keep else None
@@ -145,6 +150,11 @@ def tables(figures: Mapping[str, list[Judgment]]) -> tuple[Table, Table]:
     return means, changes
 
 
+def print_tables(figures: Mapping[str, list[Judgment]]) -> None:
+    for table in tables(figures):
+        print("\n".join(lines(table)))
+
+
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="benchmarks.scan_rivals",
@@ -162,9 +172,8 @@ def main(arguments: list[str] | None = None) -> int:
     peers["default, told"] = shipped(TOLD)
     for name in filter(None, given.peers.split(",")):
         peers[f"Stone Soup {name}"] = stonesoup(ASSOCIATIONS[name])
-    figures = measured(peers, given.seeds, given.keep)
-    for table in tables(figures):
-        print("\n".join(lines(table)))
+    figures = judged_by_seed(peers, given.seeds, given.keep)
+    print_tables(figures)
     if given.output:
         told = {name: [asdict(one) for one in each] for name, each in figures.items()}
         write_json(given.output, rounded(plain(told)), 1)

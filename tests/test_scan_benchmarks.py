@@ -5,7 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks import aircraft, autoferry, dense_traffic, scan_rivals, scan_speed
+from benchmarks import (
+    aircraft,
+    autoferry,
+    dense_traffic,
+    scan_rivals,
+    scan_speed,
+    stonesoup_clutter,
+)
 from benchmarks.scan_judge import Rule, fast_rows, judged, mean_judgment
 from benchmarks.scan_peers import (
     Followed,
@@ -183,6 +190,20 @@ def test_the_script_of_crowded_water(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(scan_rivals, "shipped", lambda _name: None)
     assert scan_rivals.main(arguments) == 0
     assert out.read_text() == first
+
+
+def test_the_script_of_trackers_within_stone_soup(capsys):
+    pytest.importorskip("stonesoup", reason="Stone Soup is not installed")
+    trackers = "kalman-cv:sigma_v=0.2,maneuver:level=0.3"
+    assert stonesoup_clutter.main(["--seeds", "1", "--scans", "10", "--trackers", trackers]) == 0
+    means, changes = capsys.readouterr().out.split("minus Stone Soup Kalman")
+    for name in ("Stone Soup Kalman", *trackers.split(",")):
+        row = next(line for line in means.splitlines() if line.startswith(name))
+        ospa, tracked = row[len(name) :].split()[:2]
+        # Half of the scans are before the fourth plot.
+        assert 2.0 < float(ospa) < 16.0
+        assert float(tracked) > 0.4
+        assert (name in changes) == (name != "Stone Soup Kalman")
 
 
 def test_the_script_of_dense_traffic(monkeypatch, tmp_path):

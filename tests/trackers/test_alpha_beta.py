@@ -250,12 +250,32 @@ def test_the_acceleration_decays_until_the_next_prediction(missed):
             # The memory is kept, and the retention time that of the last plot.
             tau, turn = retention[turn % 3] if seen else tau, turn + 1
 
+    assert tracker.retention_time(result.state) == tau
     state = tracker.start(plots[0], times[0])
     for z, t in zip(plots[1:], times[1:], strict=True):
         state = tracker.step(state, z, t)
     np.testing.assert_array_equal(state.lanes, result.state.lanes)
     batch = np.repeat(plots[:, None, None], 40_000, axis=1)
     np.testing.assert_array_equal(tracker.run(times, batch).predicted[:, 7, 0], result.predicted)
+
+
+def test_retention_times_are_shaped_as_plots():
+    plots = np.cumsum(np.ones((5, 3, 2)), axis=0)
+    plots[3, 1, 1] = np.nan
+    for covariance in (None, 1.0):
+        tracker = ft.AlphaBetaTracker(Leaky((2.0, np.inf, 0.5)), covariance=covariance)
+        # An axis with a plot less is one turn behind.
+        found = tracker.retention_time(tracker.run(np.arange(5.0), plots, 1.0).state)
+        np.testing.assert_array_equal(found, [[np.inf, np.inf], [np.inf, 2.0], [np.inf, np.inf]])
+    together = ft.AlphaBetaTracker(ft.FuzzyScheduler("maneuver", level=5.0))
+    assert together.coupled
+    state = together.run(np.arange(5.0), plots, 1.0).state
+    found = together.retention_time(state)
+    assert found.shape == (3, 2)
+    np.testing.assert_array_equal(found[:, 0], found[:, 1])
+    assert (found > 0.0).all()
+    fixed = ft.AlphaBetaTracker(FIXED)
+    assert fixed.retention_time(fixed.start(1.0, 0.0)) == np.inf
 
 
 @pytest.mark.parametrize("state", [None, "state", 3.0])

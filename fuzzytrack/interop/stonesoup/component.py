@@ -7,6 +7,8 @@ from typing import Any
 
 from stonesoup.base import Base, Property
 
+from fuzzytrack.arrays import Array
+from fuzzytrack.interop.stonesoup.plots import position_of
 from fuzzytrack.interop.stonesoup.recursion import Recursion
 
 __all__ = ["GainScheduledComponent"]
@@ -45,3 +47,8 @@ class GainScheduledComponent(Base):
         self._recursion = Recursion.of(
             self.tracker, self.position_mapping, self.velocity_mapping, self.acceleration_mapping
         )
+
+    def _position_of(self, detection: Any) -> tuple[Array, Array]:
+        """Position of a detection, and its covariance; the component may have a model."""
+        layout = self._recursion.layout
+        return position_of(detection, self.measurement_model, layout.position, layout.ndim)

@@ -14,7 +14,6 @@ from stonesoup.types.track import Track
 
 from fuzzytrack.gains.checks import nonnegative_deviation, number, positive_deviation
 from fuzzytrack.interop.stonesoup.component import GainScheduledComponent
-from fuzzytrack.interop.stonesoup.plots import position_of
 from fuzzytrack.interop.stonesoup.states import ScheduledGaussianStateUpdate
 
 __all__ = ["GainScheduledInitiator"]
@@ -94,7 +93,7 @@ class GainScheduledInitiator(GainScheduledComponent, GaussianInitiator):
 
     def _track(self, detection: Any, when: datetime) -> Track:
         recursion = self._recursion
-        position, noise = position_of(detection, self.measurement_model, recursion.layout.position)
+        position, noise = self._position_of(detection)
         memory = recursion.started(position, noise, when, self._velocity, self._acceleration)
         state = ScheduledGaussianStateUpdate(
             recursion.vector(memory),

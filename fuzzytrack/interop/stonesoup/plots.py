@@ -18,7 +18,9 @@ __all__ = ["position_of"]
 _STEP = float(np.finfo(float).eps) ** (1 / 3)
 
 
-def position_of(detection: Any, model: Any, position_mapping: Sequence[int]) -> tuple[Array, Array]:
+def position_of(
+    detection: Any, model: Any, position_mapping: Sequence[int], ndim: int | None = None
+) -> tuple[Array, Array]:
     """Position of a detection, and its covariance.
 
     That of a model that is not linear comes from its inverse function and the Jacobian of it. What
@@ -31,6 +33,8 @@ def position_of(detection: Any, model: Any, position_mapping: Sequence[int]) -> 
         Used if the detection has none.
     position_mapping : sequence of int
         Places of the axes in a state vector.
+    ndim : int, optional
+        Length of the state vectors of tracks, which must be that of the model.
 
     Returns
     -------
@@ -50,10 +54,11 @@ def position_of(detection: Any, model: Any, position_mapping: Sequence[int]) -> 
             "measurement_model: neither the detection nor the component has one; give it to either"
         )
     places = list(position_mapping)
-    if model.ndim_state <= max(places):
+    if model.ndim_state <= max(places) or ndim not in (None, model.ndim_state):
+        wanted = f"more than {max(places)}" if ndim is None else str(ndim)
         raise ValueError(
-            f"measurement_model: its state has {model.ndim_state} places, and position_mapping "
-            f"{tuple(places)} needs more; give both the same state"
+            f"measurement_model: its states have {model.ndim_state} places, those of the mappings "
+            f"{wanted}; give the same ndim_state"
         )
     measured = np.asarray(detection.state_vector, dtype=np.float64).ravel()
     noise = np.asarray(model.covar(), dtype=np.float64)

@@ -8,7 +8,6 @@ import numpy as np
 from stonesoup.updater.kalman import ExtendedKalmanUpdater
 
 from fuzzytrack.interop.stonesoup.component import GainScheduledComponent
-from fuzzytrack.interop.stonesoup.plots import position_of
 from fuzzytrack.interop.stonesoup.states import (
     ScheduledGaussianStatePrediction,
     ScheduledGaussianStateUpdate,
@@ -81,12 +80,10 @@ class GainScheduledUpdater(GainScheduledComponent, ExtendedKalmanUpdater):
         recursion.check(before)
         when = detection.timestamp
         if recursion.is_at(before, when):
-            # At the time of the last plot there is no velocity to be had.
+            # With T = 0 there is no gain β/T.
             vector, covar, memory = prediction.state_vector, prediction.covar, before
         else:
-            position, noise = position_of(
-                detection, self.measurement_model, recursion.layout.position
-            )
+            position, noise = self._position_of(detection)
             predicted = np.asarray(prediction.covar)
             memory = recursion.corrected(before, predicted, position, noise, when)
             vector, covar = recursion.vector(memory), memory.covar
