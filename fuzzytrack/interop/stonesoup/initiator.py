@@ -42,7 +42,7 @@ class GainScheduledInitiator(GainScheduledComponent, GaussianInitiator):
         default=None,
         readonly=True,
         doc="Standard deviation of a new target's acceleration on each axis (m/s²), >= 0, for a "
-        "tracker that has one. Default `None`: that of the tracker, which then needs one.",
+        "tracker that has one. Without it that of the tracker is taken, which then needs one.",
     )
     measurement_model: MeasurementModel = Property(
         default=None, doc="Used for detections that have none."

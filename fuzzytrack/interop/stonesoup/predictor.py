@@ -41,8 +41,8 @@ class GainScheduledPredictor(GainScheduledComponent, Predictor):
         default=None,
         readonly=True,
         doc="Standard deviation of the target's acceleration from plot to plot (m/s²), >= 0; of a "
-        "tracker with acceleration that of its change. The covariance follows from it. Default "
-        "`None`: that of the tracker, which then needs one.",
+        "tracker with acceleration that of its change. The covariance follows from it. Without "
+        "it that of the tracker is taken, which then needs one.",
     )
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
