@@ -67,7 +67,10 @@ COMMANDS = {
         "reproduce:reproduce",
         "Rebuild the experiments of a paper, and compare its numbers with ours.",
     ),
-    "rulebase": ("rulebase:rulebase", "List, show, copy, check, explain and edit rule bases."),
+    "rulebase": (
+        "rulebase:rulebase",
+        "List, show, copy, check, explain, edit and export rule bases.",
+    ),
     "scanner": (
         "scanner:scanner",
         "List, show, check, copy and tune configurations of scan trackers; list their parts.",

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fuzzytrack.cli import options
-from fuzzytrack.cli.complaints import one_line
+from fuzzytrack.cli.complaints import Command, one_line
 from fuzzytrack.cli.output import print_json, print_table, say
 from fuzzytrack.cli.pictures import save_picture
+from fuzzytrack.cli.rulebase_export import export
 from fuzzytrack.cli.rulebase_tables import print_explanation, print_rulebase, review_lines
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.as_json import rulebase_as_json
@@ -34,7 +35,7 @@ __all__ = ["rulebase"]
 rulebase = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="List, show, copy, check, explain and edit rule bases.",
+    help="List, show, copy, check, explain, edit and export rule bases.",
     rich_markup_mode=None,
 )
 
@@ -267,3 +268,6 @@ def _schema_text() -> str:
     from fuzzytrack.schedulers.settings import scheduler_schema
 
     return dumps_schema(scheduler_schema())
+
+
+rulebase.command("export", cls=Command)(export)

@@ -1,0 +1,86 @@
+"""The command that writes a rule base as source of another language."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+import typer
+
+from fuzzytrack.cli import options
+from fuzzytrack.cli.output import output_folder, print_json, progress, say, show
+from fuzzytrack.interop.c99.export import export_c
+from fuzzytrack.interop.c99.number_types import NUMBERS
+from fuzzytrack.plurals import counted
+
+__all__ = ["LANGUAGES", "export"]
+
+#: What a rule base can be written as.
+LANGUAGES = ("c99",)
+
+
+def export(
+    name: Annotated[str, typer.Argument(metavar="RULEBASE", help="Shipped name, or file.")],
+    to: Annotated[str, typer.Option(metavar="c99", help="The language.")],
+    output: Annotated[
+        str,
+        typer.Option(
+            "--output", "-o", metavar="DIR", help="Folder for the files; made if need be."
+        ),
+    ],
+    number: Annotated[
+        str,
+        typer.Option(
+            metavar="|".join(NUMBERS),
+            help="Numbers of inputs and outputs; q15 are integers of 16 bits over the universes.",
+        ),
+    ] = "double",
+    table: Annotated[
+        bool,
+        typer.Option(
+            "--table",
+            help="Where no table at the break points of the sets is exact, write one on a finer "
+            "grid, with a measured error, rather than formulas; with q15 always.",
+        ),
+    ] = False,
+    nodes: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Nodes on each input of such a table. [default: by inputs]"),
+    ] = None,
+    force: options.Force = False,
+    json: options.Json = False,
+) -> None:
+    """Write a rule base as a C99 header, with a program that checks it against fuzzytrack."""
+    if to not in LANGUAGES:
+        raise ValueError(f"--to: unknown language {to!r}; one of {', '.join(LANGUAGES)}")
+    folder = output_folder(output, force=force)
+    with progress("Measuring errors") as report:
+        made = export_c(name, number=number, table=table, nodes=nodes, progress=report)
+    made.write(folder)
+    written = [str(folder / file) for file in made.files]
+    if json:
+        print_json({**made.figures, "files": written})
+        return
+    for line in _summary(made.figures):
+        say(line)
+    for file in written:
+        say(f"wrote {file}")
+
+
+def _summary(figures: Mapping[str, Any]) -> list[str]:
+    """What was written, a line for each fact."""
+    unit = " steps" if figures["number"] == "q15" else ""
+    nodes = " x ".join(map(str, figures["nodes"]))
+    lines = [f"method      {figures['method']}{f', {nodes} nodes' if nodes else ''}"]
+    for name, error in figures["errors"].items():
+        ulps = f", {counted(error['ulps'], 'ulp')}" if "ulps" in error else ""
+        lines.append(
+            f"error       {name}: {show(error['largest'], 3)}{unit} at most{ulps}; "
+            f"bound {show(error['bound'], 3)}{unit}"
+        )
+    lines.append(
+        f"memory      ROM {figures['rom_bytes']} bytes and the code, stack "
+        f"{figures['ram_bytes']} bytes"
+    )
+    counts = [counted(n, kind.removesuffix("s")) for kind, n in figures["operations"].items() if n]
+    return [*lines, f"operations  {', '.join(counts)} at most"]

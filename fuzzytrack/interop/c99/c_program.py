@@ -1,0 +1,40 @@
+"""A piece of C source and what it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from fuzzytrack.reprs import summary
+
+__all__ = ["OPERATIONS", "CProgram"]
+
+#: Kinds of operations, as they are printed.
+OPERATIONS = ("additions", "multiplications", "divisions", "comparisons", "shifts")
+
+
+@dataclass(frozen=True, eq=False)
+class CProgram:
+    """Definitions in C.
+
+    Attributes
+    ----------
+    definitions : str
+        Types and functions, without the lines that include headers.
+    operations : dict of int
+        Most operations of one call by kind; subtractions are additions.
+    constants_bytes, state_bytes : int
+        Bytes of constant data, and of the local variables of a call or of the state of a track.
+    includes, needs : frozenset of str
+        Headers, and functions of the library of mathematics.
+    """
+
+    definitions: str
+    operations: Mapping[str, int]
+    constants_bytes: int
+    state_bytes: int
+    includes: frozenset[str] = field(default=frozenset())
+    needs: frozenset[str] = field(default=frozenset())
+
+    def __repr__(self) -> str:
+        return summary(self, "constants_bytes", "state_bytes", "needs")

@@ -1,0 +1,209 @@
+"""Exported files: compiled with every warning, run, and read."""
+
+import json
+import re
+import subprocess
+
+import numpy as np
+import pytest
+from c99_bases import COMPILERS, WARNINGS, built, partition_base
+from typer.testing import CliRunner
+
+import fuzzytrack as ft
+from fuzzytrack.cli.app import app
+from fuzzytrack.fuzzy.loading import rulebase_path, shipped_rulebases
+from fuzzytrack.fuzzy.variable import Variable
+from fuzzytrack.interop.c99.export import export_c
+from fuzzytrack.interop.c99.number_types import NUMBERS
+
+compiled = pytest.mark.skipif(not COMPILERS, reason="needs gcc or clang")
+
+
+def run(folder, program, compiler, *options):
+    command = [compiler, *WARNINGS, *options, program, "-o", "selftest"]
+    subprocess.run(command, cwd=folder, check=True)
+    return subprocess.run([folder / "selftest"], capture_output=True, text=True, check=False)
+
+
+@compiled
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("number", NUMBERS)
+def test_self_tests_pass_without_a_warning(number, compiler, tmp_path):
+    names = shipped_rulebases() if compiler == COMPILERS[0] else ("stiffness-damping", "tipper")
+    for name in names:
+        made = export_c(name, number=number, table=True, random=1_000)
+        made.write(tmp_path)
+        done = run(tmp_path, f"{name}_selftest.c", compiler, "-O1")
+        assert (done.returncode, done.stderr) == (0, ""), done.stdout
+        assert re.fullmatch(rf"{name}: \d+ values are right\n", done.stdout)
+
+
+@compiled
+@pytest.mark.parametrize("number", NUMBERS)
+def test_self_tests_pass_under_sanitizers(number, tmp_path):
+    for name in ("stiffness-damping", "valve-confidence"):
+        export_c(name, number=number, random=2_000).write(tmp_path)
+        options = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+        done = run(tmp_path, f"{name}_selftest.c", COMPILERS[0], *options)
+        assert (done.returncode, done.stderr) == (0, ""), done.stdout
+
+
+@compiled
+@pytest.mark.parametrize(
+    ("number", "right", "wrong"), [("float", "0.35f", "0.34f"), ("q15", "65535U", "65000U")]
+)
+def test_a_self_test_finds_a_wrong_number(number, right, wrong, tmp_path):
+    made = export_c("stiffness-damping", number=number, random=100)
+    made.write(tmp_path)
+    (tmp_path / "stiffness-damping.h").write_text(made.header.replace(right, wrong, 1))
+    done = run(tmp_path, "stiffness-damping_selftest.c", COMPILERS[0])
+    assert done.returncode == 1
+    assert re.fullmatch(r"stiffness-damping: \d+ values are wrong\n", done.stdout)
+
+
+@compiled
+@pytest.mark.parametrize("number", ["double", "float"])
+@pytest.mark.parametrize("name", ["stiffness-damping", "valve-confidence"])
+def test_nan_and_numbers_beyond_the_ends_are_as_in_the_library(name, number, tmp_path):
+    system = ft.FuzzySystem(name)
+    n = len(system.rules.inputs)
+    some = [np.nan, np.inf, -np.inf, -7.0, 50.0, 0.2, -0.0, 1e-45]
+    rows = np.stack([a.ravel() for a in np.meshgrid(*[some] * n)], axis=1)
+    rows = rows.astype(np.float32 if number == "float" else float)
+    found = built(export_c(name, number=number, random=100), tmp_path)(rows)
+    expected = np.stack(list(system.evaluate(rows.astype(float)).values()), axis=1)
+    np.testing.assert_allclose(found, expected, rtol=5e-7)
+
+
+@compiled
+def test_names_that_are_no_identifiers(tmp_path):
+    base = partition_base()
+    words = {"a": "double", "b": "k"}
+    inputs = tuple(Variable(words[v.name], v.universe, v.sets, label="*/ ??/") for v in base.inputs)
+    rules = tuple(
+        type(r)(tuple((words[n], s) for n, s in r.conditions), r.consequents) for r in base.rules
+    )
+    odd = type(base)(
+        '2 "Regler" \\ */ für \n#error', inputs, base.outputs, rules, base.operators,
+        description="a\\",
+    )  # fmt: skip
+    for number in NUMBERS:
+        made = export_c(odd, number=number, random=100)
+        assert made.prefix == "rules_2_Regler_fur_error"
+        made.write(tmp_path)
+        done = run(tmp_path, f"{made.name}_selftest.c", COMPILERS[0])
+        assert (done.returncode, done.stdout.count("\n")) == (0, 1)
+
+
+@compiled
+def test_two_headers_in_one_program(tmp_path):
+    for name, number in (("stiffness-damping", "float"), ("valve", "q15")):
+        export_c(name, number=number, random=100).write(tmp_path)
+    (tmp_path / "both.c").write_text(
+        '#include "stiffness-damping.h"\n#include "valve.h"\n#include "valve.h"\n'
+        "int main(void)\n{\n    const float s = stiffness_damping_infer(0.0f, 0.0f).stiffness;\n"
+        "    return ((s > 0.0f) && (valve_infer(0).opening < 32767)) ? 0 : 1;\n}\n"
+    )
+    assert run(tmp_path, "both.c", COMPILERS[0]).returncode == 0
+
+
+def test_the_same_rule_base_gives_the_same_bytes(tmp_path):
+    one, other = (export_c("valve", number="float", random=500) for _ in range(2))
+    assert one.files == other.files
+    copy = tmp_path / "valve.yaml"
+    copy.write_bytes(rulebase_path("valve").read_bytes())
+    assert export_c(copy, number="float", random=500).files == one.files
+
+
+def test_a_rule_base_that_was_made_in_python():
+    rules = ft.load_rulebase("valve")
+    made = export_c(rules, random=100, name="my valve")
+    assert list(made.files) == ["my_valve.h", "my_valve_selftest.c"]
+    assert "valve as JSON, SHA-256" in made.header
+    assert repr(made).startswith('<CExport: name="my_valve", number="double"')
+
+
+def test_the_comment_states_what_the_figures_state():
+    made = export_c("stiffness-damping", number="float", random=1_000)
+    comment = made.header.partition("*/")[0]
+    assert "Input         E: normalized error, -1 to 1" in comment
+    assert f"{made.figures['rom_bytes']} bytes of constants" in comment
+    assert f"{made.figures['operations']['additions']} additions" in comment
+    assert "1,000 random inputs and 299 break" in comment
+    bound = made.figures["errors"]["stiffness"]["bound"]
+    assert f"stiffness {bound:.3g}" in comment
+    q15 = export_c("stiffness-damping", number="q15", random=100).header
+    assert "stiffness: 0.25 to 0.35; value = 0.3 + stiffness * 1.52587890625e-06" in q15
+
+
+def test_no_double_literal_is_in_float_code():
+    for name in ("stiffness-damping", "valve-confidence"):
+        header = export_c(name, number="float", random=100).header
+        code = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
+        assert not re.findall(r"\d\.\d+(e[-+]\d+)?(?![\df.e])", code)
+        assert "double" not in code
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"number": "q7"}, r"number: unknown 'q7'; one of double, float, q15"),
+        ({"random": 0}, r"random: at least 1 input is needed, got 0"),
+        ({"nodes": 9}, r"nodes: valve is tabulated at the break points of its sets, which is"),
+    ],
+)
+def test_what_cannot_be_exported_is_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        export_c("valve", **options)
+
+
+# -------------------------------------------------------------------- the command
+
+
+def call(*words):
+    return CliRunner().invoke(app, ["rulebase", "export", *map(str, words)])
+
+
+def test_the_command_writes_and_says_so(tmp_path):
+    folder = tmp_path / "out"
+    words = ("omega-schedule", "--to", "c99", "--number", "q15", "-o", folder)
+    done = call(*words)
+    assert done.exit_code == 0, done.output
+    assert sorted(p.name for p in folder.iterdir()) == [
+        "omega-schedule.h", "omega-schedule_selftest.c",
+    ]  # fmt: skip
+    assert "method      break points, 7 nodes" in done.stdout
+    assert "error       stiffness: 1.49 steps at most; bound 1.49 steps" in done.stdout
+    assert f"wrote {folder / 'omega-schedule.h'}" in done.stdout
+    again = call(*words)
+    assert (again.exit_code, again.stderr.count("\n")) == (2, 1)
+    assert "replace them with --force" in again.stderr
+    figures = json.loads(call(*words, "--force", "--json").stdout)
+    assert figures["rom_bytes"] == 66
+    assert figures["errors"]["stiffness"]["bound"] < 1.5
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("valve", "--to", "ada"), "--to: unknown language 'ada'; one of c99"),
+        (("valve", "--to", "c99", "--number", "q31"), "--number: unknown 'q31'"),
+        (("valve", "--to", "c99", "--nodes", "3"), "--nodes: valve is tabulated"),
+        (("valfe", "--to", "c99"), "unknown rule base 'valfe'"),
+        (("valve",), "Missing option '--to'"),
+    ],
+)
+def test_a_mistake_is_one_line_and_leaves_no_files(words, message, tmp_path):
+    done = call(*words, "-o", tmp_path / "out")
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+    assert message in done.stderr
+    assert not (tmp_path / "out").is_dir() or not any((tmp_path / "out").iterdir())
+
+
+def test_files_appear_together_or_not_at_all(tmp_path):
+    made = export_c("valve", random=100)
+    (tmp_path / "valve_selftest.c").mkdir()
+    with pytest.raises(IsADirectoryError):
+        made.write(tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["valve_selftest.c"]
