@@ -9,6 +9,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import output_folder, print_json, progress, say, show
+from fuzzytrack.interop.c99.c_program import operations_in_words
 from fuzzytrack.interop.c99.export import export_c
 from fuzzytrack.interop.c99.number_types import NUMBERS
 from fuzzytrack.plurals import counted
@@ -78,9 +79,9 @@ def _summary(figures: Mapping[str, Any]) -> list[str]:
             f"error       {name}: {show(error['largest'], 3)}{unit} at most{ulps}; "
             f"bound {show(error['bound'], 3)}{unit}"
         )
-    lines.append(
-        f"memory      ROM {figures['rom_bytes']} bytes and the code, stack "
-        f"{figures['ram_bytes']} bytes"
-    )
-    counts = [counted(n, kind.removesuffix("s")) for kind, n in figures["operations"].items() if n]
-    return [*lines, f"operations  {', '.join(counts)} at most"]
+    stack = "" if figures["ram_bytes"] is None else f", stack {figures['ram_bytes']} bytes"
+    return [
+        *lines,
+        f"memory      ROM {figures['rom_bytes']} bytes and the code{stack}",
+        f"operations  {operations_in_words(figures['operations'])} at most",
+    ]

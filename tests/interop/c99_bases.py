@@ -99,7 +99,7 @@ def built(made, folder, compiler="gcc", options=("-O2",)):
     made.write(folder)
     signature = re.search(r"FUZZYTRACK_INLINE (\w+_outputs) (\w+_infer)\((.*)\)", made.header)
     structure, function, parameters = signature.groups()
-    members = re.search(r"typedef struct {\n(.*?)}", made.header, re.DOTALL)[1]
+    members = re.search(r"typedef struct {([^}]*)} \w+_outputs;", made.header)[1]
     outputs = re.findall(r"\w+ (\w+);", members)
     n_inputs = parameters.count(",") + 1
     c_type = parameters.split()[0]

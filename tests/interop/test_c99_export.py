@@ -76,6 +76,37 @@ def test_nan_and_numbers_beyond_the_ends_are_as_in_the_library(name, number, tmp
 
 
 @compiled
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("number", ["double", "float"])
+def test_formulas_are_within_four_units_in_the_last_place(number, compiler, tmp_path):
+    made = export_c("tipper", number=number, random=500)
+    assert made.figures["method"] == "formulas"
+    made.write(tmp_path)
+    assert run(tmp_path, "tipper_selftest.c", compiler).returncode == 0
+    random = np.random.default_rng(2)
+    dtype = np.float32 if number == "float" else np.float64
+    rows = random.uniform(-1, 11, (10_000, 2)).astype(dtype)
+    rows[:5] = [[np.nan, 1], [1, np.nan], [np.inf, 3], [-np.inf, 3], [0, 10]]
+    found = built(made, tmp_path, compiler)(rows)[:, 0]
+    expected = ft.FuzzySystem("tipper").evaluate(rows.astype(float))["tip"]
+    assert np.isnan(found[:2]).all()
+    np.testing.assert_array_max_ulp(
+        found[2:], expected.astype(dtype)[2:], 4 if number == "float" else 64
+    )
+
+
+def test_what_has_no_formulas_needs_a_table():
+    rules = ft.load_rulebase("tipper")
+    middle = type(rules.operators)("min", "max", "bisector")
+    other = type(rules)("tipper", rules.inputs, rules.outputs, rules.rules, middle)
+    with pytest.raises(ValueError, match="table: tipper has defuzzification bisector, for which"):
+        export_c(other, random=10)
+    assert export_c(other, table=True, nodes=9, random=10).figures["nodes"] == [9, 13]
+    with pytest.raises(ValueError, match=r"nodes: tipper is written as formulas; `table` writes"):
+        export_c("tipper", nodes=9)
+
+
+@compiled
 def test_names_that_are_no_identifiers(tmp_path):
     base = partition_base()
     words = {"a": "double", "b": "k"}
@@ -129,7 +160,7 @@ def test_the_comment_states_what_the_figures_state():
     assert "Input         E: normalized error, -1 to 1" in comment
     assert f"{made.figures['rom_bytes']} bytes of constants" in comment
     assert f"{made.figures['operations']['additions']} additions" in comment
-    assert "1,000 random inputs and 299 break" in comment
+    assert f"1,000 random inputs and {made.figures['vectors']} break" in comment
     bound = made.figures["errors"]["stiffness"]["bound"]
     assert f"stiffness {bound:.3g}" in comment
     q15 = export_c("stiffness-damping", number="q15", random=100).header

@@ -11,25 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.as_json import rulebase_as_json
-from fuzzytrack.fuzzy.coverage import find_hole
 from fuzzytrack.fuzzy.loading import as_rulebase, rulebase_path
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
-from fuzzytrack.interop.c99.c_program import CProgram
 from fuzzytrack.interop.c99.error_bound import RANDOM_INPUTS, ErrorBound, error_bound
-from fuzzytrack.interop.c99.float_lookup import FloatLookup, float_lookup
-from fuzzytrack.interop.c99.float_writer import FloatWriter
-from fuzzytrack.interop.c99.grid_table import (
-    GridTable,
-    breakpoint_table,
-    default_nodes,
-    even_table,
-)
+from fuzzytrack.interop.c99.formulas import Formulas, formulas
+from fuzzytrack.interop.c99.grid_table import breakpoint_table
 from fuzzytrack.interop.c99.header import (
     about_bound,
     about_operations,
@@ -39,10 +27,9 @@ from fuzzytrack.interop.c99.header import (
 )
 from fuzzytrack.interop.c99.identifiers import c_identifier
 from fuzzytrack.interop.c99.number_types import NumberType, number_type
-from fuzzytrack.interop.c99.q15_lookup import Q15Lookup, q15_lookup
-from fuzzytrack.interop.c99.q15_writer import Q15Writer
 from fuzzytrack.interop.c99.selftest import selftest_text
-from fuzzytrack.interop.c99.signature import Signature, signature
+from fuzzytrack.interop.c99.signature import signature
+from fuzzytrack.interop.c99.tabulated import Tabulated, tabulated
 from fuzzytrack.interop.c99.vectors import vectors
 from fuzzytrack.json_types import plain
 from fuzzytrack.reprs import summary
@@ -166,11 +153,12 @@ def export_c(
     prefix = c_identifier(called, "rules")
     system = FuzzySystem(loaded)
     names = signature(loaded, prefix, kind.c_type)
-    made = _tabulated(system, kind, table, nodes)
+    made = _method(system, kind, table, nodes)
     program = made.program(names)
-    checked = vectors(system, kind, made.table.nodes)
-    bound = error_bound(system, kind, made.evaluate, checked, random=random, progress=progress)
-    silent = _silent(made, loaded)
+    checked = vectors(system, kind, made.nodes)
+    tried = min(random, made.most_random)
+    bound = error_bound(system, kind, made.evaluate, checked, random=tried, progress=progress)
+    silent = made.silent
     about = [
         *about_rules(loaded, source, kind),
         *about_variables(loaded, names, kind, silent),
@@ -190,7 +178,7 @@ def export_c(
         "files": list(files),
         "rule_base": source,
         "method": made.method,
-        "nodes": [len(n) for n in made.table.nodes],
+        "nodes": [len(n) for n in made.nodes],
         "errors": _errors(loaded, bound),
         "random_inputs": bound.random or "all",
         "vectors": len(checked.inputs),
@@ -199,6 +187,25 @@ def export_c(
         "operations": dict(program.operations),
     }
     return CExport(called, prefix, number, files, figures)
+
+
+def _method(
+    system: FuzzySystem, kind: NumberType, table: bool, nodes: int | None
+) -> Tabulated | Formulas:
+    """How a rule base is written: at its break points if that is exact."""
+    name = system.rules.name
+    exact = breakpoint_table(system.rules)
+    if exact is not None:
+        if nodes is not None:
+            raise ValueError(
+                f"nodes: {name} is tabulated at the break points of its sets, which is exact"
+            )
+        return tabulated(system, kind, exact, None)
+    if kind.whole or table:
+        return tabulated(system, kind, None, nodes)
+    if nodes is not None:
+        raise ValueError(f"nodes: {name} is written as formulas; `table` writes a table")
+    return formulas(system, kind)
 
 
 def _source(rules: RuleBase | str | os.PathLike[str]) -> tuple[str, RuleBase, str]:
@@ -211,83 +218,6 @@ def _source(rules: RuleBase | str | os.PathLike[str]) -> tuple[str, RuleBase, st
     path = rulebase_path(rules)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     return f"{path.name}, SHA-256 {digest}", loaded, path.stem
-
-
-@dataclass(frozen=True, eq=False)
-class _Tabulated:
-    """A table, rounded to numbers of C."""
-
-    table: GridTable
-    lookup: FloatLookup | Q15Lookup
-
-    @property
-    def method(self) -> str:
-        return "break points" if self.table.exact else "table"
-
-    @property
-    def words(self) -> str:
-        size = " x ".join(str(len(n)) for n in self.table.nodes)
-        if self.table.exact:
-            return f"a table at the break points of the sets ({size}), exact but for rounding"
-        return f"a table of {size} nodes, an approximation between them"
-
-    def program(self, names: Signature) -> CProgram:
-        if isinstance(self.lookup, Q15Lookup):
-            return Q15Writer(names, self.lookup).program()
-        return FloatWriter(names, self.lookup).program()
-
-    def evaluate(self, rows: NDArray[Any]) -> NDArray[Any]:
-        return np.stack(list(self.lookup(rows).values()), axis=1)
-
-
-def _tabulated(system: FuzzySystem, kind: NumberType, table: bool, nodes: int | None) -> _Tabulated:
-    rules = system.rules
-    found = breakpoint_table(rules)
-    if found is None:
-        found = even_table(system, default_nodes(len(rules.inputs)) if nodes is None else nodes)
-        _refuse_gaps(rules, found)
-    elif nodes is not None:
-        raise ValueError(
-            f"nodes: {rules.name} is tabulated at the break points of its sets, which is exact"
-        )
-    defaults = {v.name: np.nan if v.default is None else v.default for v in rules.outputs}
-    if not kind.whole:
-        return _Tabulated(found, float_lookup(found, defaults, kind.dtype))
-    for name in found.totals:
-        hole = find_hole(rules, name) if np.isnan(defaults[name]) else None
-        if hole is not None and hole.stretches:
-            raise RuleBaseError(
-                f"{rules.name}: {hole}, and integers have no NaN: add a rule, or give the output a "
-                "default"
-            )
-    universes = {v.name: v.universe for v in rules.outputs}
-    inputs = tuple(v.universe for v in rules.inputs)
-    return _Tabulated(found, q15_lookup(found, inputs, universes, defaults))
-
-
-def _refuse_gaps(rules: RuleBase, table: GridTable) -> None:
-    """Raise RuleBaseError if no rule fires at a node of a table."""
-    for name, values in table.moments.items():
-        if np.isnan(values).any():
-            node = np.argwhere(np.isnan(values))[0]
-            where = ", ".join(
-                f"{word}={axis[k]:.6g}"
-                for word, axis, k in zip(rules.input_names, table.nodes, node, strict=True)
-            )
-            raise RuleBaseError(
-                f"{rules.name}: no rule about {name} fires at {where}, and a table has no gaps: "
-                "add a rule, or give the output a default"
-            )
-
-
-def _silent(made: _Tabulated, rules: RuleBase) -> dict[str, str]:
-    """What the outputs of a table are where no rule fires, for those where this can happen."""
-    says = {}
-    for name, total in made.table.totals.items():
-        if not total.min() > 0.0:
-            default = rules.output(name).default
-            says[name] = "NaN" if default is None else f"{default:.15g}"
-    return says
 
 
 def _errors(rules: RuleBase, bound: ErrorBound) -> dict[str, dict[str, float]]:

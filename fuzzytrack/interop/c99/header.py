@@ -6,12 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
-from fuzzytrack.interop.c99.c_program import CProgram
+from fuzzytrack.interop.c99.c_program import CProgram, operations_in_words
 from fuzzytrack.interop.c99.c_text import comment_lines
 from fuzzytrack.interop.c99.error_bound import ErrorBound
 from fuzzytrack.interop.c99.number_types import NumberType
 from fuzzytrack.interop.c99.signature import Signature
-from fuzzytrack.plurals import counted
 from fuzzytrack.version import __version__
 
 __all__ = ["about_bound", "about_operations", "about_rules", "about_variables", "header_text"]
@@ -145,11 +144,6 @@ def about_bound(
 def about_operations(program: CProgram) -> Iterator[tuple[str, str]]:
     """Bytes and operations."""
     yield "ROM", f"{program.constants_bytes} bytes of constants, and the code"
-    yield (
-        "RAM",
-        f"none but the stack: {program.state_bytes} bytes of variables, if all are in memory",
-    )
-    counts = ", ".join(
-        counted(n, kind.removesuffix("s")) for kind, n in program.operations.items() if n
-    )
-    yield "Operations", f"at most {counts} for a call"
+    stack = "" if program.state_bytes is None else f": {program.state_bytes} bytes of variables"
+    yield "RAM", f"none but the stack{stack}"
+    yield "Operations", f"at most {operations_in_words(program.operations)} for a call"

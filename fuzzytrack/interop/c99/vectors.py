@@ -76,10 +76,11 @@ def library_values(system: FuzzySystem, number: NumberType, rows: NDArray[Any]) 
 
 
 def _points(variable: Variable, nodes: Array) -> Array:
-    """Ends, corners of the sets, nodes, and the middles between them."""
+    """Ends, corners and centers of the sets, nodes, and the middles between them."""
     low, high = variable.universe.low, variable.universe.high
-    corners = [p for s in variable.sets for p in s.breakpoints() if low < p < high]
-    points = np.unique(np.concatenate([[low, high], corners, nodes]))
+    marks = {*variable.centers().tolist(), *(p for s in variable.sets for p in s.breakpoints())}
+    inside = [mark for mark in marks if low < mark < high]
+    points = np.unique(np.concatenate([[low, high], inside, nodes]))
     return np.union1d(points, (points[1:] + points[:-1]) / 2)
 
 
