@@ -118,10 +118,9 @@ class Page:
             self.used = time.monotonic()
 
     def save_draft(self) -> None:
-        """Keep texts that have been changed, so that they are there after a start of the server."""
-        if self.version:
-            with contextlib.suppress(OSError, ValueError):  # the folder may be gone, or be full
-                self.session.autosave()
+        """Keep texts that are not saved, so that they are there after a start of the server."""
+        with contextlib.suppress(OSError, ValueError):  # the folder may be gone, or be full
+            self.session.autosave()
 
     def report(self, job: Job, with_results: bool) -> None:
         """Tell the page of a job."""
@@ -154,6 +153,12 @@ class Studio:
         if self._trackers is None:
             self._trackers = listed_trackers()
         return self._trackers
+
+    def closed_drafts(self) -> list[str]:
+        """Keys of the drafts that no open page goes on with, the latest first."""
+        with self._lock:
+            shown = {key for key, page in self._pages.items() if page.connected}
+        return [key for key in self.folder.drafts() if key not in shown]
 
     def warm(self) -> None:
         """Do once what takes long for the first time."""

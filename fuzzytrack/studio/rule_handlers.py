@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -10,12 +11,13 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.complaints import Complaint
-from fuzzytrack.studio.folder import Folder
+from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.handlers import Handler
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.state import cell_place, rulebase_state, shared_sets
 from fuzzytrack.studio.symmetry import DRAWN
 from fuzzytrack.studio.world_handlers import scenario_state
+from fuzzytrack.yamltree import quoted
 
 __all__ = ["HANDLERS", "changed", "listed_files", "state_of"]
 
@@ -263,6 +265,27 @@ def files(page: Page, given: Arguments) -> Answer:
     return {"files": listed_files(page.studio.folder)}
 
 
+def drafts(page: Page, given: Arguments) -> Answer:
+    """Drafts of pages that were closed before their texts were saved."""
+    found = []
+    for key in page.studio.closed_drafts():
+        # A damaged draft is left where it is.
+        with contextlib.suppress(FolderError):
+            texts = page.session.draft_texts(key)
+            found.append({"key": key, **{kind: text.name for kind, text in texts.items()}})
+    return {"drafts": found}
+
+
+def restore(page: Page, given: Arguments) -> Answer:
+    """Take the texts of a draft, which is then that of this page."""
+    key = given.text("key", longest=32)
+    if key not in page.studio.closed_drafts():
+        raise ValueError(f"key: {quoted(key)}: there is no such draft, or another page has it open")
+    page.session.restore(key)
+    page.studio.folder.drop_draft(key)
+    return {**changed(page), "scenario": scenario_state(page)}
+
+
 def listed_files(folder: Folder) -> list[dict[str, Any]]:
     """Files of a folder with their kinds: rules, scenario, recording, other."""
     return [
@@ -302,4 +325,6 @@ HANDLERS = {
     "open": Handler(open_rules, ("name",)),
     "save": Handler(save, ("name", "overwrite")),
     "files": Handler(files),
+    "drafts": Handler(drafts),
+    "restore": Handler(restore, ("key",)),
 }

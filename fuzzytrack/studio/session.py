@@ -270,9 +270,22 @@ class Session:
         return self._text_as_saved(kind, self._open_text(kind).name)
 
     def autosave(self) -> bool:
-        """Write a draft of both texts, if they have changed since; False if not, or no folder."""
+        """Write a draft of both texts while one is not saved, and remove it when both are.
+
+        Returns
+        -------
+        bool
+            Whether there is a new draft; there is none where they have not changed since, or
+            without a folder.
+        """
+        if self.folder is None:
+            return False
+        if all(map(self.is_saved, KINDS)):
+            self.folder.drop_draft(self.key)
+            self._draft = None
+            return False
         draft = json.dumps({kind: asdict(self._open_text(kind)) for kind in KINDS})
-        if self.folder is None or draft == self._draft:
+        if draft == self._draft:
             return False
         self.folder.save_draft(self.key, draft)
         self._draft = draft
@@ -286,6 +299,19 @@ class Session:
         FolderError
             If there is no such draft, or it is none that a session has written.
         """
+        found = self.draft_texts(key)
+        before = self.texts
+        self._history.put(Texts(**found))
+        self._read(before)
+
+    def draft_texts(self, key: str) -> dict[str, OpenText]:
+        """Texts of a draft, by their kinds.
+
+        Raises
+        ------
+        FolderError
+            As for `restore`.
+        """
         try:
             draft = json.loads(self._folder().draft(key))
             found = {kind: OpenText(**draft[kind]) for kind in KINDS}
@@ -296,9 +322,7 @@ class Session:
             raise
         except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise FolderError(f"draft {key}: is damaged ({error}); remove it") from None
-        before = self.texts
-        self._history.put(Texts(**found))
-        self._read(before)
+        return found
 
     # ---------------------------------------------------------------- what follows
 

@@ -193,15 +193,19 @@ def test_differences(folder):
 
 def test_drafts(folder):
     session = Session(folder, key="a1")
-    assert session.autosave()
+    # What is shipped needs no draft.
     assert not session.autosave()
     session.do("cell", {"where": WHERE, "says": "S-S"})
     assert session.autosave()
+    assert not session.autosave()
     other = Session(folder, key="a2")
     other.restore("a1")
     assert other.texts == session.texts
     assert shown(other) == "S"
     assert other.undo()
+    session.save("rules", "drafted.yaml")
+    assert not session.autosave()
+    assert folder.drafts() == ()
     for damaged in ("{", "[]", '{"rules": 3}', json.dumps({"rules": {"name": 1, "text": "x"}})):
         folder.save_draft("a1", damaged)
         with pytest.raises(FolderError, match="draft a1: is damaged"):

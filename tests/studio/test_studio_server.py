@@ -170,3 +170,27 @@ def test_a_draft_outlives_the_server(tmp_path, new_server):
         assert page.hello["session"] == key
         names = [s["name"] for s in page.hello["state"]["rulebase"]["outputs"][0]["sets"]]
         assert "mid" in names
+
+
+def test_a_draft_of_a_closed_page_is_opened_by_another_and_goes_when_saved(tmp_path, new_server):
+    server = new_server(tmp_path)
+    with server.page() as page:
+        page.ask("rename_set", variable="stiffness", set="M", name="mid")
+        key = page.hello["session"]
+        with server.page() as other:
+            # A page that is open keeps its draft to itself.
+            server.studio().open(key).save_draft()
+            assert other.ask("drafts")["drafts"] == []
+            assert "another page has it open" in other.refused("restore", key=key)
+    with server.page() as page:
+        found = page.ask("drafts")["drafts"]
+        assert found == [{"key": key, "rules": "stiffness-damping", "scenario": "turn"}]
+        state = page.ask("restore", key=key)["state"]
+        assert "mid" in [s["name"] for s in state["rulebase"]["outputs"][0]["sets"]]
+        assert page.ask("drafts")["drafts"] == []
+        own = server.studio().open(page.hello["session"])
+        own.save_draft()
+        assert len(list(tmp_path.glob(".draft-*"))) == 1
+        page.ask("save", name="mine.yaml")
+        own.save_draft()
+        assert list(tmp_path.glob(".draft-*")) == []

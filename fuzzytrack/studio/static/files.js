@@ -51,7 +51,9 @@ export function mount(element, app) {
 
   // ------------------------------------------------------------------ open and save
 
-  function open() {
+  async function open() {
+    const { drafts } = await socket.send("drafts");
+    store.set(await socket.send("files"));
     const { files, shipped, state } = store.now;
     const rulebases = files.filter(({ kind }) => kind === "rules");
     const entry = (kind) => (one) =>
@@ -68,9 +70,24 @@ export function mount(element, app) {
         html("span", {}, one),
         html("small", {}, kind),
       );
+    const draftEntry = ({ key, rules, scenario }) =>
+      html(
+        "button",
+        {
+          type: "button",
+          class: "entry",
+          onclick: async () => {
+            dialog.close();
+            if (await app.edit("restore", { key })) say(`The draft of ${rules} is open; undo takes it back.`);
+          },
+        },
+        html("span", {}, `${rules}, scenario ${scenario}`),
+        html("small", {}, "draft of a page that was closed"),
+      );
     const list = html(
       "div",
       { class: "entries" },
+      ...drafts.map(draftEntry),
       ...rulebases.map((file) => entry("in the folder")(file.name)),
       ...shipped.map(entry("shipped")),
     );

@@ -12,7 +12,7 @@ import { isShown, mountViews } from "./views.js";
 
 const INITIAL = {
   // From the server.
-  connected: false, session: null, hello: null, state: null, files: [], shipped: [], values: null,
+  connected: false, session: null, opened: { rules: null, scenario: null }, hello: null, state: null, files: [], shipped: [], values: null,
   valuesError: null, explanation: null, gains: null, visits: null, runs: 0,
   scenario: null, job: null, results: null, asked: null, tracked: null, tuned: null, uploads: [],
   // What is looked at.
@@ -28,7 +28,7 @@ const INITIAL = {
   tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },
 };
 const KEPT = [
-  "session", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "axes", "point", "camera",
+  "session", "opened", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "axes", "point", "camera",
   "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
   "asked", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
   "trackers", "wantedRuns", "seed", "readings", "uploads", "tuneOn", "tuning",
@@ -90,15 +90,31 @@ function lose() {
 
 async function greet() {
   try {
-    const hello = await socket.send("hello", { session: store.now.session });
+    const { session: before, opened } = store.now;
+    const hello = await socket.send("hello", { session: before });
     const { session, state, files: found, shipped } = hello;
     store.set({ hello, session, state, files: found, shipped, connected: true });
     document.body.classList.add("ready");
     seeVisits();
+    if (before && session !== before) await reopen(opened);
   } catch (error) {
     say(error.message, "error");
   }
 }
+
+/** Open what was open, where a server that was started anew does not know the page; drafts it does. */
+async function reopen({ rules, scenario }) {
+  const { state, scenario: now } = store.now;
+  if (rules && rules !== state.name) await edit("open", { name: rules });
+  if (scenario && scenario !== now.name) await app.scenario.change("open_scenario", { name: scenario });
+}
+
+/** The files of the folder, where other programs may have written meanwhile. */
+async function listFiles() {
+  if (store.now.connected) store.set(await socket.send("files").catch(() => ({})));
+}
+
+addEventListener("focus", listFiles);
 
 /** Where the last run went, for the shading of surfaces. */
 async function seeVisits() {
@@ -111,6 +127,10 @@ store.follow(["job"], ({ job }) => {
   if (job?.kind !== "run" || job.state !== "done") return;
   store.set({ runs: store.now.runs + 1 });
   seeVisits();
+});
+
+store.follow(["state", "scenario"], ({ state, scenario }) => {
+  if (state && scenario) store.set({ opened: { rules: state.name, scenario: scenario.name } });
 });
 
 store.follow(["connected", "hello"], ({ connected, hello }) => {

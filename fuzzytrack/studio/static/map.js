@@ -102,12 +102,14 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
 
   function setScale() {
     const [west, south, east, north] = bounds() ?? [-1000, -1000, 1000, 1000];
-    const [width, height] = [picture.clientWidth, picture.clientHeight].map((v) =>
+    // The buttons lie over the top of the map.
+    const top = tools.offsetHeight;
+    const [width, height] = [picture.clientWidth, picture.clientHeight - top].map((v) =>
       Math.max(40, v - 2 * BORDER),
     );
     const least = 1e-3 * Math.max(1, Math.abs(east), Math.abs(north));
     scale = Math.max(Math.max(east - west, least) / width, Math.max(north - south, least) / height);
-    center = [(west + east) / 2, (south + north) / 2];
+    center = [(west + east) / 2, (south + north + scale * top) / 2];
   }
 
   /** Show all there is. */

@@ -25,6 +25,8 @@ const COLUMNS = [
   ["nis", "NIS", "", "Normalized innovation squared, to be compared with the number of axes"],
   ["nees", "NEES", "", "Normalized estimation error squared, to be compared with the number of axes"],
 ];
+const MARKS =
+  "Best: the least RMSE predicted. Worse than plots: its RMSE filtered is above that of the plots themselves";
 const WORDS = { worse: "worse than plots", "best, worse": "best, worse than plots" };
 
 /** The table; `toggle(name)` shows or hides the lines of a tracker, `hidden` has those hidden. */
@@ -128,7 +130,7 @@ function rowOf(row, columns, hidden, toggle) {
         "div",
         {},
         lineButton(row.name, row.index, off, toggle),
-        row.mark ? html("span", { class: "mark" }, WORDS[row.mark] ?? row.mark) : null,
+        row.mark ? html("span", { class: "mark", title: MARKS }, WORDS[row.mark] ?? row.mark) : null,
       ),
     ),
     ...columns.map(([key]) => cellOf(row, key)),

@@ -6,7 +6,7 @@ import {
 import { html, select } from "./elements.js";
 import { pictureMenu } from "./pictures.js";
 import { consequents, outputsOf, piecesOf, variable, withWord } from "./rulebase.js";
-import { complaintRow } from "./text.js";
+import { complaintRows } from "./text.js";
 import { showWords } from "./words.js";
 
 export const title = "Rules";
@@ -234,7 +234,7 @@ export function mount(element, app) {
     }
     if (JSON.stringify(rulebase.operators) !== operators.dataset.known) showOperators(rulebase);
     about.textContent = rulebase.description;
-    complaints.replaceChildren(...state.complaints.map((one) => complaintRow(one, () => goTo(one))));
+    complaints.replaceChildren(...complaintRows(state.complaints, goTo));
     const outputs = outputsOf(rulebase);
     if (!outputs.includes(store.now.colorBy)) store.set({ colorBy: outputs[0] });
   });

@@ -93,12 +93,19 @@ export function mount(element, app) {
       area.scrollTop = scrollTop;
     }
     paint();
-    complaints.replaceChildren(...state.complaints.map((one) => complaintRow(one, () => goTo(one.line, one.column))));
+    complaints.replaceChildren(...complaintRows(state.complaints, ({ line, column }) => goTo(line, column)));
   });
 }
 
-/** A complaint with a button that leads to its place. */
-export function complaintRow({ message, line, column }, go) {
+/** Complaints, each with a button that goes to its place, below what they mean for the pictures. */
+export function complaintRows(complaints, go) {
+  const stale = complaints.some(({ stops }) => stops)
+    ? [html("p", { class: "complaint" }, "The text does not load: table and pictures are of the last one that did.")]
+    : [];
+  return [...stale, ...complaints.map((one) => complaintRow(one, () => go(one)))];
+}
+
+function complaintRow({ message, line, column }, go) {
   const place = line ? `${line}:${column}` : "here";
   return html(
     "div",
