@@ -186,6 +186,16 @@ class Folder:
         """
         return _file_text(f"draft {key}", _read(f"draft {key}", self._draft(key), _MAX_DRAFT)).text
 
+    def draft_time(self, key: str) -> float:
+        """When a draft was written (s since 1970).
+
+        Raises
+        ------
+        OSError
+            If there is none.
+        """
+        return self._draft(key).stat().st_mtime
+
     def save_draft(self, key: str, text: str) -> None:
         """Write a draft; of more than 8 in the folder the oldest are removed.
 

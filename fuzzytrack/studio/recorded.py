@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -85,8 +87,21 @@ class Recorded:
         """
         check_plots(self.path)
         with naming(self.path), naming(self.true_file or self.path):
-            reading = Reading.of(**self.reading)
-            return read_used_plots(self.path, reading, truth=self.truth)
+            options = json.dumps(self.reading, sort_keys=True)
+            files = [self.path] if self.true_file is None else [self.path, self.true_file]
+            return _read(str(self.path), options, self.truth, tuple(map(_version, files)))
+
+
+# A page asks what is in a recording before it has it tracked.
+@lru_cache(maxsize=1)
+def _read(path: str, options: str, truth: str | None, versions: tuple[object, ...]) -> UsedPlots:
+    """Plots of a file; those of the last one are kept while no file changes."""
+    return read_used_plots(path, Reading.of(**json.loads(options)), truth=truth)
+
+
+def _version(path: Path) -> tuple[int, int, int]:
+    found = path.stat()
+    return found.st_ino, found.st_mtime_ns, found.st_size
 
 
 def summary_of(used: UsedPlots) -> dict[str, Any]:

@@ -270,9 +270,10 @@ def drafts(page: Page, given: Arguments) -> Answer:
     found = []
     for key in page.studio.closed_drafts():
         # A damaged draft is left where it is.
-        with contextlib.suppress(FolderError):
+        with contextlib.suppress(FolderError, OSError):
             texts = page.session.draft_texts(key)
-            found.append({"key": key, **{kind: text.name for kind, text in texts.items()}})
+            names = {kind: text.name for kind, text in texts.items()}
+            found.append({"key": key, "time": page.studio.folder.draft_time(key), **names})
     return {"drafts": found}
 
 

@@ -170,6 +170,11 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server):
         studio.get_by_role("button", name="Use track as the track column").click()
     facts = studio.locator("#pane-data .what")
     expect(facts).to_contain_text("6 tracks", timeout=60_000)
+    expect(studio.get_by_text("radar.csv is being")).not_to_be_visible()
+    studio.get_by_role("button", name="Save a picture of innovations").click()
+    with studio.expect_download() as download:
+        studio.get_by_role("menuitem", name="SVG").click()
+    assert download.value.suggested_filename == "radar-innovations.svg"
     expect(studio.get_by_label("Positions")).to_have_value("polar")
     # What is estimated stands where it can be typed; 30 m and 0.1 degrees are true.
     expect(studio.get_by_role("textbox", name="Range σ")).to_have_attribute("placeholder", "≈ 30")

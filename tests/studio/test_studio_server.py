@@ -184,6 +184,7 @@ def test_a_draft_of_a_closed_page_is_opened_by_another_and_goes_when_saved(tmp_p
             assert "another page has it open" in other.refused("restore", key=key)
     with server.page() as page:
         found = page.ask("drafts")["drafts"]
+        assert abs(found[0].pop("time") - (tmp_path / f".draft-{key}.json").stat().st_mtime) < 1
         assert found == [{"key": key, "rules": "stiffness-damping", "scenario": "turn"}]
         state = page.ask("restore", key=key)["state"]
         assert "mid" in [s["name"] for s in state["rulebase"]["outputs"][0]["sets"]]

@@ -125,7 +125,7 @@ export function makeChart(chosen = null) {
     const ranges = now.series.length <= MOST_RANGES;
     const rows = now.series.map((series) => rowOf(series, value, ranges)).filter(Boolean);
     readout.replaceChildren(
-      html("div", { class: "at" }, `${now.x.label.replace(/ \(.*/, "")} ${shown(value, 5)}`),
+      html("div", { class: "at" }, withUnit(now.x.label, value)),
       ...rows,
     );
     // On the side of the cursor that has more room.
@@ -138,6 +138,12 @@ export function makeChart(chosen = null) {
 
   new ResizeObserver(draw).observe(element);
   return { element, picture, show };
+}
+
+/** A value of an axis, such as "time 60 s" of "time (s)". */
+function withUnit(label, value) {
+  const [, name, unit = ""] = label.match(/^(.*?)(?: \((.*?)\).*)?$/);
+  return `${name} ${shown(value, 5)} ${unit}`.trim();
 }
 
 function axisOf(picture, key) {

@@ -51,13 +51,18 @@ export function mount(element, app) {
     html(
       "div",
       { class: "pictures" },
-      figure(app, "Track", "data-track", picture, lines, [which]),
-      figure(app, "Innovations", "data-innovations", innovations, lines, [axis]),
+      figure(app, "Track", "track", picture, lines, [which], nameOf),
+      figure(app, "Innovations", "innovations", innovations, lines, [axis], nameOf),
     ),
   );
   const hint = html("p");
   const empty = html("div", { class: "nothing" }, hint);
-  const progress = html("progress", { "aria-label": "Tracking" });
+  const work = html(
+    "div",
+    { class: "work", hidden: true },
+    html("p", { class: "muted", role: "status" }),
+    html("progress", { "aria-label": "Progress of the recording" }),
+  );
   // Numbers of questions, of which the last one counts.
   let asked = 0;
 
@@ -73,7 +78,7 @@ export function mount(element, app) {
     html(
       "div",
       { class: "beside" },
-      html("div", { class: "tall" }, html("div", { class: "progress" }, progress), empty, body),
+      html("div", { class: "tall" }, work, empty, body),
       html("div", { class: "side" }, recording.element, group("Trackers", picks.element)),
     ),
   );
@@ -95,7 +100,7 @@ export function mount(element, app) {
     if (!name) return say("There is no recording: drop a CSV file, or choose one in the folder.", "error");
     if (!trackers.length) return say("No tracker is chosen: check one in the list, or add one.", "error");
     const number = (asked += 1);
-    store.set({ tracking: true });
+    store.set({ working: "tracked" });
     try {
       const tracked = await socket.send("track", { name, trackers, ...argumentsOf(store.now) });
       if (number !== asked) return;
@@ -105,7 +110,7 @@ export function mount(element, app) {
     } catch (error) {
       if (number === asked) say(inFields(error.message), "error");
     } finally {
-      if (number === asked) store.set({ tracking: false });
+      if (number === asked) store.set({ working: null });
     }
   }
 
@@ -128,10 +133,9 @@ export function mount(element, app) {
     picture.redraw();
   });
   store.follow(["tracked", "trackShown"], () => picture.fit());
-  store.follow(["tracking"], ({ tracking }) => {
-    progress.hidden = !tracking;
-  });
-  store.follow(["tracking", "recording", "described"], (now) => {
+  store.follow(["working", "recording", "described"], (now) => {
+    work.hidden = !now.working;
+    work.firstChild.textContent = `${now.recording} is being ${now.working}.`;
     hint.textContent = hintOf(now);
   });
 
@@ -143,11 +147,15 @@ export function mount(element, app) {
   }
 }
 
-function hintOf({ tracking, recording, described }) {
-  if (tracking) return `${recording} is being tracked.`;
+function hintOf({ working, recording, described }) {
+  if (working) return "";
   if (described?.problem) return `${recording} cannot be read yet: the message below its name says why.`;
   if (recording) return `Track and compare: all trackers that are checked follow the tracks of ${recording}.`;
   return "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared.";
+}
+
+function nameOf({ tracked }) {
+  return tracked?.name.replace(/\.csv$/i, "");
 }
 
 function shownTrack({ tracked, trackShown }) {

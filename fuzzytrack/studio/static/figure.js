@@ -11,9 +11,9 @@ const ROW = 18;
  * The picture: `name` is that of its file, `part` a chart or a map with {element, picture}, `lines()`
  * gives what its lines are, [[name, index], ...], and `controls` are shown beside the heading.
  */
-export function figure({ store }, heading, name, part, lines, controls = []) {
+export function figure({ store }, heading, name, part, lines, controls = [], of = scenarioOf) {
   const file = () => withKey(svgFile(part.picture, token("--panel")), lines());
-  const fileName = () => `${store.now.results?.scenario ?? store.now.recording ?? "studio"}-${name}`;
+  const fileName = () => `${of(store.now) ?? "studio"}-${name}`;
   return html(
     "figure",
     { class: "picture" },
@@ -26,6 +26,10 @@ export function figure({ store }, heading, name, part, lines, controls = []) {
     ),
     part.element,
   );
+}
+
+function scenarioOf({ results }) {
+  return results?.scenario;
 }
 
 /** The file with the names of the lines below the picture, which stand beside it on the page. */

@@ -70,7 +70,7 @@ export function mount(element, app) {
         html("span", {}, one),
         html("small", {}, kind),
       );
-    const draftEntry = ({ key, rules, scenario }) =>
+    const draftEntry = ({ key, time, rules, scenario }) =>
       html(
         "button",
         {
@@ -82,13 +82,13 @@ export function mount(element, app) {
           },
         },
         html("span", {}, `${rules}, scenario ${scenario}`),
-        html("small", {}, "draft of a page that was closed"),
+        html("small", {}, `draft, not saved, ${new Date(1000 * time).toLocaleString()}`),
       );
     const list = html(
       "div",
       { class: "entries" },
-      ...drafts.map(draftEntry),
       ...rulebases.map((file) => entry("in the folder")(file.name)),
+      ...drafts.map(draftEntry),
       ...shipped.map(entry("shipped")),
     );
     const filter = html("input", {

@@ -19,7 +19,7 @@ const INITIAL = {
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
   resultsTab: "all", hidden: [], sorting: { key: null, down: false }, quantity: "predicted", band: "se",
-  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, described: null, tracking: false, trackShown: 0,
+  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, described: null, working: null, trackShown: 0,
   axisShown: 0,
   // How.
   points: 41, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",

@@ -237,7 +237,9 @@ function grid(place, center, width, height) {
   for (const value of multiples(center[0] - half.x, center[0] + half.x, step)) {
     const at = place.x(value);
     parts.push(svg("line", { class: "grid", x1: at, x2: at, y1: 0, y2: height }));
-    if (at > 60) parts.push(svg("text", { class: "number", x: at + 3, y: height - 5 }, label(value)));
+    // A label is up to 48 px wide, and one that does not fit is left out.
+    if (at > 60 && at < width - 48)
+      parts.push(svg("text", { class: "number", x: at + 3, y: height - 5 }, label(value)));
   }
   for (const value of multiples(center[1] - half.y, center[1] + half.y, step)) {
     const at = place.y(value);

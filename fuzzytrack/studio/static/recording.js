@@ -147,16 +147,16 @@ export function recordingForm(app, taken) {
 
   async function ask(command, args) {
     const number = (asked += 1);
+    store.set({ working: "read" });
+    let described = null;
     try {
-      const described = await socket.send(command, args);
-      if (number !== asked) return;
-      store.set({ described, ...(described.problem ? { tracked: null } : {}) });
-      if (!described.problem) taken();
+      described = await socket.send(command, args);
     } catch (error) {
-      if (number !== asked) return;
-      const described = { name: args.name, columns: [], problem: error.message };
-      store.set({ described, tracked: null });
+      described = { name: args.name, columns: [], problem: error.message };
     }
+    if (number !== asked) return;
+    store.set({ described, working: null, ...(described.problem ? { tracked: null } : {}) });
+    if (!described.problem) taken();
   }
 
   async function take(file) {
@@ -239,8 +239,8 @@ export function recordingForm(app, taken) {
     gap.show(reading.max_gap);
     sort.firstChild.checked = reading.sort;
   });
-  store.follow(["described"], ({ described }) => {
-    problem.hidden = !described?.problem;
+  store.follow(["described", "working"], ({ described, working }) => {
+    problem.hidden = !described?.problem || working === "read";
     problem.replaceChildren(...(described?.problem ? withRemedies(described.problem, put) : []));
   });
   // After a reload the recording is read again when it is looked at.
