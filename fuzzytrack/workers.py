@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import threading
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor
 from contextlib import contextmanager
 from functools import partial
+from multiprocessing import parent_process
 from typing import TYPE_CHECKING
 
 from fuzzytrack.plugins.scripts import Script, load_scripts, loaded_scripts
@@ -94,7 +97,17 @@ def _begin(scripts: tuple[Script, ...]) -> None:
     """Begin the work of a process, with the plug-ins that the first process has."""
     # Ctrl-C goes to all processes of a terminal: the first one ends the job.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     load_scripts(scripts)
+
+
+def _end_with_parent() -> None:
+    """End this process with the one that began it, which may be killed or lose its terminal."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        # In another thread than the first one, `sys.exit` would end that thread.
+        os._exit(1)
 
 
 @contextmanager

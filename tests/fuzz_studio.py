@@ -12,12 +12,15 @@ import asyncio
 import json
 import logging
 import random
+import re
 import resource
 import sys
 import time
 import traceback
+import warnings
 from collections import Counter
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -29,13 +32,18 @@ from fuzzytrack.studio.access import PROTOCOL, Access
 from fuzzytrack.studio.app import make_app
 from fuzzytrack.studio.command_table import HANDLERS
 from fuzzytrack.studio.folder import Folder
+from fuzzytrack.studio.memory import give_back_at_once
+from fuzzytrack.studio.notes import warnings_to_notes
 from fuzzytrack.studio.pages import Studio
 
 TOKEN, HOST = "a-token-of-the-tests", "127.0.0.1:8098"
-# Messages of a page; seconds that an answer may take; letters of a refusal; MiB that may be added.
-CHUNK, SECONDS, LETTERS, MEBIBYTES = 250, 30.0, 2000, 200
-# Pages before memory is compared: with more of them than are kept.
-WARM_UP = 16
+# Messages of a page; seconds that an answer may take; letters of a refusal.
+CHUNK, SECONDS, LETTERS = 250, 30.0, 2000
+# MiB that may be added after so many pages: by then what is kept for trackers and rule bases that
+# come again is as large as it may be, and matplotlib has been imported.
+MEBIBYTES, WARM_UP = 30, 160
+# Pages after which memory is printed.
+PAGES = 40
 
 # -------------------------------------------------------------------- messages
 
@@ -243,7 +251,7 @@ class Socket:
         await asyncio.wait_for(self.task, SECONDS)
 
 
-def check(found: str | bytes, seq: int, folder: Path) -> str:
+def check(found: str | bytes, seq: int, sent: str | bytes, folder: Path) -> str:
     """What an answer is: done, a surface or refused; raises if it is anything else."""
     if isinstance(found, bytes):
         assert int.from_bytes(found[:4], "little") == seq, "a surface of another message"
@@ -259,7 +267,19 @@ def check(found: str | bytes, seq: int, folder: Path) -> str:
     assert "Traceback" not in said, "a traceback"
     assert "\n" not in said, "several lines"
     assert str(folder) not in said, "the name of the folder"
+    named = re.match("([a-z_]+): ", said)
+    assert not named or named[1] in names_in(sent), f"no argument of the message: {said[:80]}"
     return "refused"
+
+
+def names_in(sent: str | bytes) -> tuple[str, ...]:
+    """What a refusal of a message may begin with: its fields, and the arguments of its command."""
+    try:
+        name = json.loads(sent)["command"]
+    except (KeyError, RecursionError, TypeError, ValueError):
+        name = None
+    known = HANDLERS[name].names if isinstance(name, str) and name in HANDLERS else ()
+    return ("seq", "command", "arguments", *known)
 
 
 async def talk(app: Any, seed: int, page: int, count: int, folder: Path, report: Report) -> None:
@@ -271,7 +291,7 @@ async def talk(app: Any, seed: int, page: int, count: int, folder: Path, report:
         sent = message(chance, seq)
         started = time.monotonic()
         try:
-            kind = check(await socket.ask(sent), seq, folder)
+            kind = check(await socket.ask(sent), seq, sent, folder)
         except Exception as error:
             report.failures.append(f"page {page}, message {seq}: {error!r}: {sent[:300]!r}")
             if socket.task.done() or isinstance(error, TimeoutError):
@@ -310,19 +330,29 @@ def run(seed: int, count: int, folder: Path, chunk: int = CHUNK) -> Report:
         report.failures.append(f"{error!r:.300} at {last.filename}:{last.lineno}")
         return "unexpected"
 
+    def shown(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+        report.failures.append(f"on the console: {category.__name__}: {message}")
+
     log, was = Kept(report), connection.in_one_sentence
     logging.getLogger().addHandler(log)
     # What is answered by a general sentence is a mistake of the program.
     connection.in_one_sentence = unexpected
+    stack = ExitStack()
+    stack.enter_context(warnings.catch_warnings())
+    warnings.showwarning = shown
+    stack.enter_context(warnings_to_notes())
     try:
         for page in range(-(-count // chunk)):
             asyncio.run(talk(app, seed, page, min(chunk, count - page * chunk), folder, report))
-            if page == WARM_UP:
+            if page + 1 == WARM_UP:
                 report.begun = resident()
+            if (page + 1) % PAGES == 0:
+                print(f"{(page + 1) * chunk} messages: {resident():.0f} MiB", flush=True)
             if len(report.failures) > 20:
                 break
         report.peak = resident()
     finally:
+        stack.close()
         connection.in_one_sentence = was
         logging.getLogger().removeHandler(log)
         studio.close()
@@ -345,13 +375,14 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=100_000, help="number of messages")
     parser.add_argument("--seed", type=int, default=1, help="which messages")
     given = parser.parse_args()
+    give_back_at_once()
     with TemporaryDirectory() as folder:
         report = run(given.seed, given.count, Path(folder))
     kinds = ", ".join(f"{count} {kind}" for kind, count in report.outcomes.items())
     print(
         f"{report.messages} messages: {kinds}; slowest answer {report.slowest:.1f} s "
-        f"({report.slowest_message}); memory {report.begun:.0f} MiB after {WARM_UP} pages, "
-        f"{report.peak:.0f} at the end"
+        f"({report.slowest_message}); memory {report.begun:.0f} MiB after {CHUNK * WARM_UP} "
+        f"messages, {report.peak:.0f} at the end"
     )
     for failure in report.failures:
         print(f"FAILED {failure}")

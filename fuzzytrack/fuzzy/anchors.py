@@ -40,7 +40,7 @@ def write_out(
         in the place of an alias.
     """
     first = TextEdits(text, file).before
-    owner = first.input(variable) if variable in first.input_names else first.output(variable)
+    owner = first.variable(variable)
     if set_name is not None:
         owner.index(set_name)
     for _ in range(MAX_DEPTH):

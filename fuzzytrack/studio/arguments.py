@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["Arguments"]
+from fuzzytrack.errors import FileError
+
+__all__ = ["Arguments", "renamed"]
 
 _LONGEST = 131_072
 _MOST_ITEMS = 10_000
@@ -19,6 +22,8 @@ class Arguments:
     Parameters
     ----------
     given : mapping of str to JSON value
+    within : str
+        What stands before the names of arguments in messages.
 
     Notes
     -----
@@ -26,8 +31,9 @@ class Arguments:
     ValueError that names the argument and what is allowed.
     """
 
-    def __init__(self, given: Mapping[str, Any]) -> None:
+    def __init__(self, given: Mapping[str, Any], within: str = "") -> None:
         self._given = given
+        self._within = within
 
     def __contains__(self, name: str) -> bool:
         return self._given.get(name) is not None
@@ -45,8 +51,8 @@ class Arguments:
         self._missing(name, _NEEDED, "a list of objects")
         found = self._items(name, "a list of objects")
         if not found or not all(isinstance(each, dict) for each in found):
-            raise ValueError(f"{name}: needs a list of objects, at least one")
-        return [Arguments(each) for each in found]
+            raise self._wrong(name, "needs a list of objects, at least one")
+        return [Arguments(each, f"{self._within}{name}: ") for each in found]
 
     def text(self, name: str, default: Any = _NEEDED, longest: int = _LONGEST) -> Any:
         """A text of at most so many characters."""
@@ -54,11 +60,11 @@ class Arguments:
             return default
         found = self._given[name]
         if not isinstance(found, str):
-            raise ValueError(f"{name}: needs a text")
+            raise self._wrong(name, "needs a text")
         if len(found) > longest:
-            raise ValueError(f"{name}: {len(found)} characters; at most {longest}")
+            raise self._wrong(name, f"{len(found)} characters; at most {longest}")
         if any("\ud800" <= c <= "\udfff" for c in found):
-            raise ValueError(f"{name}: has half a character (a lone surrogate); type it anew")
+            raise self._wrong(name, "has half a character (a lone surrogate); type it anew")
         return found
 
     def texts(self, name: str, default: Any = _NEEDED) -> Any:
@@ -67,21 +73,21 @@ class Arguments:
             return default
         found = self._items(name, "a list of texts")
         if not found or not all(isinstance(each, str) for each in found):
-            raise ValueError(f"{name}: needs a list of texts, at least one")
+            raise self._wrong(name, "needs a list of texts, at least one")
         return list(found)
 
     def choice(self, name: str, allowed: Sequence[str], default: Any = _NEEDED) -> Any:
         """One of some words."""
         found = self.text(name, default)
         if found is not default and found not in allowed:
-            raise ValueError(f"{name}: unknown {found[:40]!r}; one of {', '.join(allowed)}")
+            raise self._wrong(name, f"unknown {found[:40]!r}; one of {', '.join(allowed)}")
         return found
 
     def flag(self, name: str) -> bool:
         """Whether; no unless given."""
         found = self._given.get(name)
         if found is not None and not isinstance(found, bool):
-            raise ValueError(f"{name}: needs true or false")
+            raise self._wrong(name, "needs true or false")
         return bool(found)
 
     def whole(self, name: str, low: int, high: int, default: Any = _NEEDED) -> Any:
@@ -93,20 +99,20 @@ class Arguments:
         if isinstance(found, float) and found.is_integer():
             found = int(found)
         if type(found) is not int or not low <= found <= high:
-            raise ValueError(f"{name}: needs {kind}, got {_short(found)}")
+            raise self._wrong(name, f"needs {kind}, got {_short(found)}")
         return found
 
     def number(self, name: str, default: Any = _NEEDED) -> Any:
         """A finite number."""
         if self._missing(name, default, "a number"):
             return default
-        return _number(name, self._given[name])
+        return self._number(name, self._given[name])
 
     def numbers(self, name: str, default: Any = _NEEDED) -> Any:
         """A list of finite numbers."""
         if self._missing(name, default, "a list of numbers"):
             return default
-        return [_number(name, each) for each in self._items(name, "a list of numbers")]
+        return [self._number(name, each) for each in self._items(name, "a list of numbers")]
 
     def points(self, name: str, default: Any = _NEEDED) -> Any:
         """A list of pairs of finite numbers."""
@@ -114,51 +120,81 @@ class Arguments:
             return default
         found = self._items(name, "a list of points [x, y]")
         if not all(isinstance(each, list) and len(each) == 2 for each in found):
-            raise ValueError(f"{name}: needs a list of points [x, y]")
-        return [[_number(name, x), _number(name, y)] for x, y in found]
+            raise self._wrong(name, "needs a list of points [x, y]")
+        return [[self._number(name, x), self._number(name, y)] for x, y in found]
 
     def numbers_by_name(self, name: str) -> dict[str, float]:
         """An object of finite numbers."""
         found = self._given.get(name)
         if not isinstance(found, dict):
-            raise ValueError(f"{name}: needs an object with a number for each name")
-        return {str(key): _number(f"{name}: {key[:40]}", each) for key, each in found.items()}
+            raise self._wrong(name, "needs an object with a number for each name")
+        return {str(key): self._number(f"{name}: {key[:40]}", each) for key, each in found.items()}
 
     def texts_by_name(self, name: str) -> dict[str, str]:
         """An object of texts."""
         found = self._given.get(name)
         if not isinstance(found, dict) or not all(isinstance(v, str) for v in found.values()):
-            raise ValueError(f"{name}: needs an object with a text for each name")
+            raise self._wrong(name, "needs an object with a text for each name")
         return found
 
     def _missing(self, name: str, default: Any, kind: str) -> bool:
         if name in self:
             return False
         if default is _NEEDED:
-            raise ValueError(f"{name}: is missing; needs {kind}")
+            raise self._wrong(name, f"is missing; needs {kind}")
         return True
+
+    def _wrong(self, name: str, why: str) -> ValueError:
+        return ValueError(f"{self._within}{name}: {why}")
+
+    def _number(self, name: str, found: Any) -> float:
+        if isinstance(found, bool) or not isinstance(found, int | float):
+            raise self._wrong(name, f"needs numbers, got {_short(found)}")
+        try:
+            value = float(found)
+        except OverflowError:
+            value = math.inf
+        if not math.isfinite(value):
+            raise self._wrong(name, "needs finite numbers")
+        return value
 
     def _items(self, name: str, kind: str) -> list[Any]:
         found = self._given[name]
         if not isinstance(found, list):
-            raise ValueError(f"{name}: needs {kind}")
+            raise self._wrong(name, f"needs {kind}")
         if len(found) > _MOST_ITEMS:
-            raise ValueError(f"{name}: {len(found)} items; at most {_MOST_ITEMS}")
+            raise self._wrong(name, f"{len(found)} items; at most {_MOST_ITEMS}")
         return found
-
-
-def _number(name: str, found: Any) -> float:
-    if isinstance(found, bool) or not isinstance(found, int | float):
-        raise ValueError(f"{name}: needs numbers, got {_short(found)}")
-    try:
-        value = float(found)
-    except OverflowError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise ValueError(f"{name}: needs finite numbers")
-    return value
 
 
 def _short(found: Any) -> str:
     text = repr(found)
     return text if len(text) <= 40 else f"{text[:37]}..."
+
+
+@contextmanager
+def renamed(**names: str | None) -> Iterator[None]:
+    """Name arguments in refusals as a page does.
+
+    Parameters
+    ----------
+    **names : str or None
+        By the name that a refusal begins with: that of the page's argument; None if it has none.
+
+    Raises
+    ------
+    ValueError
+        What is raised inside.
+    """
+    try:
+        yield
+    except ValueError as failure:
+        is_placed = isinstance(failure, FileError)
+        said = failure.message if is_placed else str(failure)
+        word, colon, rest = said.partition(": ")
+        if not colon or word not in names:
+            raise
+        said = f"{names[word]}: {rest}" if names[word] else rest
+        if is_placed:
+            raise type(failure)(said, failure.location) from None
+        raise ValueError(said) from None

@@ -22,7 +22,7 @@ from fuzzytrack.fuzzy.rule_edits import (
     set_consequents,
     set_operator,
 )
-from fuzzytrack.fuzzy.rulebase import Consequent, RuleBase
+from fuzzytrack.fuzzy.rulebase import Consequent
 from fuzzytrack.fuzzy.set_edits import add_set, remove_set, rename_set
 from fuzzytrack.fuzzy.shape_edits import set_shapes
 from fuzzytrack.fuzzy.text_edits import EditedText
@@ -106,7 +106,7 @@ def shapes(
     apart: bool = False,
 ) -> EditedText:
     """Set several sets at once: set, parameters and, if it changes, shape of each."""
-    owner = _variable(loads_rulebase(text), variable)
+    owner = loads_rulebase(text).variable(variable)
     found: dict[str, FuzzySet] = {}
     mirrors: dict[str, FuzzySet] = {}
     for each in shapes:
@@ -232,17 +232,14 @@ def edited(text: str, command: str, arguments: Mapping[str, Any]) -> str:
     parameters = parameters_of(command)
     for name in arguments:
         if name not in parameters:
-            raise ValueError(f"{command}: unknown argument {quoted(name)}"
-                             f"{suggestion(name, parameters)}")  # fmt: skip
+            raise ValueError(f"{name}: is no argument of {command}{suggestion(name, parameters)}")
     for name, (kind, required) in parameters.items():
         if name not in arguments:
             if required:
-                raise ValueError(f"{command}: lacks the argument {name}, {_SAID[kind]}")
+                raise ValueError(f"{name}: is missing; {command} needs {_SAID[kind]}")
             continue
         if not _IS[kind](arguments[name]):
-            raise ValueError(
-                f"{command}: {name} must be {_SAID[kind]}, got {quoted(repr(arguments[name]))}"
-            )
+            raise ValueError(f"{name}: must be {_SAID[kind]}, got {quoted(repr(arguments[name]))}")
     return COMMANDS[command](text, **arguments)
 
 
@@ -334,7 +331,3 @@ def _mirrored(changed: EditedText, where: Mapping[str, str]) -> EditedText:
     key = frozenset(where.items())
     (rule,) = (r for r in changed.rules.rules if r.key == key)
     return set_consequents(changed, mirror, rule.consequents)
-
-
-def _variable(rules: RuleBase, name: str) -> Variable:
-    return rules.input(name) if name in rules.input_names else rules.output(name)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import re
 import stat
 import threading
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,16 +74,25 @@ class Folder:
         Raises
         ------
         FolderError
-            If there are more than 1,000.
+            If there are more than 1,000, or the folder is no longer there.
         """
         found = []
-        for entry in os.scandir(self.path):
-            if _NAME.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
-                found.append(FileEntry(entry.name, entry.stat(follow_symlinks=False).st_size))
+        try:
+            entries = list(os.scandir(self.path))
+        except OSError as error:
+            raise FolderError(
+                f"the folder {self.path.name} cannot be read any more: {error.strerror}; put it "
+                "back, or start the studio with another"
+            ) from error
+        for entry in entries:
+            # A file may be removed meanwhile.
+            with contextlib.suppress(FileNotFoundError):
+                if _NAME.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+                    found.append(FileEntry(entry.name, entry.stat(follow_symlinks=False).st_size))
         if len(found) > _MAX_FILES:
             raise FolderError(
-                f"folder: {counted(len(found), 'file')} in {self.path}; at most {_MAX_FILES} can "
-                "be listed: move some to another folder"
+                f"the folder has {counted(len(found), 'file')}; at most {_MAX_FILES} can be "
+                "listed: move some to another folder"
             )
         return sorted(found, key=lambda file: file.name.casefold())
 
@@ -141,10 +150,8 @@ class Folder:
         Raises
         ------
         FolderError
-            If the file has been changed since by another session or program, or the text is too
-            long.
-        OSError
-            If the file cannot be written; it is then as it was.
+            If the file has been changed since by another session or program, the text is too long,
+            or the file cannot be written; it is then as it was.
         """
         path, raw = self.place(name), text.encode("utf-8")
         if len(raw) > MAX_BYTES:
@@ -152,8 +159,12 @@ class Folder:
         with self._writing:
             if not overwrite:
                 self._check_version(name, path, versions)
-            with whole_file(path) as draft:
-                draft.write_bytes(raw)
+            try:
+                with whole_file(path) as draft:
+                    draft.write_bytes(raw)
+            except OSError as error:
+                why = (error.strerror or str(error)).replace(str(self.path), self.path.name)
+                raise FolderError(f"{name}: cannot be saved: {why}; export the text") from error
         return _version(raw)
 
     def _check_version(self, name: str, path: Path, versions: Collection[str]) -> None:
@@ -171,10 +182,14 @@ class Folder:
 
     def drafts(self) -> tuple[str, ...]:
         """Keys of the drafts, the latest first."""
-        found = [path for path in self.path.glob(".draft-*.json") if not path.is_symlink()]
-        found.sort(key=lambda path: path.stat().st_mtime, reverse=True)
-        keys = (path.name.removeprefix(".draft-").removesuffix(".json") for path in found)
-        return tuple(key for key in keys if _KEY.fullmatch(key))
+        found = []
+        for path in self.path.glob(".draft-*.json"):
+            key = path.name.removeprefix(".draft-").removesuffix(".json")
+            # Another server may remove one meanwhile.
+            with contextlib.suppress(FileNotFoundError):
+                if _KEY.fullmatch(key) and not path.is_symlink():
+                    found.append((path.stat().st_mtime, key))
+        return tuple(key for _, key in sorted(found, reverse=True))
 
     def draft(self, key: str) -> str:
         """Text of a draft.
@@ -211,10 +226,6 @@ class Folder:
                 draft.write_bytes(text.encode("utf-8"))
             for old in self.drafts()[MAX_DRAFTS:]:
                 self._draft(old).unlink(missing_ok=True)
-
-    def drop_draft(self, key: str) -> None:
-        """Remove a draft, if it is there."""
-        self._draft(key).unlink(missing_ok=True)
 
     def _draft(self, key: str) -> Path:
         if not isinstance(key, str) or not _KEY.fullmatch(key):
@@ -254,7 +265,7 @@ def _version(raw: bytes) -> str:
     return hashlib.sha256(raw).hexdigest()[:32]
 
 
-@contextmanager
+@contextlib.contextmanager
 def naming(path: Path) -> Iterator[None]:
     """Name a file in messages without its folder, which means nothing to the page."""
     try:

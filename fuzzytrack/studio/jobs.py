@@ -5,33 +5,21 @@ from __future__ import annotations
 import os
 import threading
 import time
-import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from contextlib import contextmanager
 from itertools import count
 from typing import Any
 
-from fuzzytrack.errors import NoRuleFiresWarning, TrackWarning
 from fuzzytrack.studio.limits import SILENCE
+from fuzzytrack.studio.notes import noted
 from fuzzytrack.workers import end_processes, process_pool
 
-__all__ = [
-    "CancelledJobError",
-    "Job",
-    "Jobs",
-    "Report",
-    "Work",
-    "noted_warnings",
-    "warnings_to_jobs",
-]
+__all__ = ["CancelledJobError", "Job", "Jobs", "Report", "Work"]
 
 # Shortest time between two reports of one job, s.
 _PAUSE = 0.1
 # Processes; a computer with more cores keeps some for the page and everything else.
 _MOST_PROCESSES = 8
-# Notes of a job; every run of a tracker may have one.
-_MOST_NOTES = 20
 
 
 class CancelledJobError(Exception):
@@ -139,9 +127,6 @@ class Job:
         }
 
 
-# The job of a thread.
-_thread = threading.local()
-
 #: Called with a job, and whether it has new results.
 Report = Callable[[Job, bool], None]
 #: Does the work of a job with some processes, and returns its results.
@@ -217,10 +202,10 @@ class Jobs:
 
     def _do(self, job: Job, work: Work, pool: ProcessPoolExecutor) -> None:
         """Do the work; runs in a thread of its own."""
-        _thread.notes = job.notes
         job.begin()
         try:
-            job.finish(work(job, pool))
+            with noted() as job.notes:
+                job.finish(work(job, pool))
         except CancelledJobError:
             pass
         except BrokenExecutor:
@@ -232,41 +217,6 @@ class Jobs:
         except Exception as failure:
             # What a plug-in raises is no mistake of the server.
             job.end("failed", f"{type(failure).__name__}: {failure}")
-
-
-@contextmanager
-def warnings_to_jobs() -> Iterator[None]:
-    """Give warnings about tracks to the job in whose thread they are issued, as its notes.
-
-    Or to `noted_warnings`; others are shown as before. It holds for the whole program, so it is for
-    its first thread.
-    """
-    shown = warnings.showwarning
-
-    def show(message: Warning | str, *where: Any, **more: Any) -> None:
-        notes: list[str] | None = getattr(_thread, "notes", None)
-        if notes is None:
-            shown(message, *where, **more)
-        elif str(message) not in notes and len(notes) < _MOST_NOTES:
-            notes.append(str(message))
-
-    with warnings.catch_warnings():
-        for category in (TrackWarning, NoRuleFiresWarning):
-            # Not once: each job has its own.
-            warnings.simplefilter("always", category)
-        warnings.showwarning = show
-        yield
-
-
-@contextmanager
-def noted_warnings() -> Iterator[list[str]]:
-    """Gather the warnings about tracks that this thread issues, as `warnings_to_jobs` does."""
-    notes: list[str] = []
-    _thread.notes = notes
-    try:
-        yield notes
-    finally:
-        _thread.notes = None
 
 
 def _processes() -> int:

@@ -18,7 +18,7 @@ from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.ragged import run_tracks, sigmas_of
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
 from fuzzytrack.studio.folder import naming
-from fuzzytrack.studio.jobs import noted_warnings
+from fuzzytrack.studio.notes import noted
 from fuzzytrack.studio.reading_arguments import check_truth
 from fuzzytrack.studio.uploads import check_plots
 from fuzzytrack.testbed.marks import best_of
@@ -151,7 +151,7 @@ def tracked_as_json(used: UsedPlots, trackers: Mapping[str, Tracker]) -> dict[st
         ``plots``, ``truth`` and for each of ``trackers`` ``predicted``, ``filtered``,
         ``innovation``; and ``comparison``: ``columns`` (key, title, unit) and ``rows``.
     """
-    with noted_warnings() as warned:
+    with noted() as warned:
         compared = compare_used(dict(trackers), used)
         drawn = [_track_as_json(track, used, trackers) for track in _drawn(used)]
     summary = summary_of(used)

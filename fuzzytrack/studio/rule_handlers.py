@@ -9,7 +9,7 @@ from typing import Any
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.specs import is_file
-from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.arguments import Arguments, renamed
 from fuzzytrack.studio.complaints import Complaint
 from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.handlers import Handler
@@ -73,7 +73,8 @@ def _complaint(rules: RuleBase, found: Complaint) -> dict[str, Any]:
 def _edit(
     page: Page, command: str, arguments: dict[str, Any], gesture: str | None = None
 ) -> Answer:
-    also = page.session.do(command, arguments, gesture)
+    with renamed(says="text", confidence="weight", word="value", operators="value", where=None):
+        also = page.session.do(command, arguments, gesture)
     page.version += 1
     return {"state": state_of(page), "also": [{"variable": v, "set": s} for v, s in also]}
 
@@ -87,9 +88,12 @@ def set_cell(page: Page, given: Arguments) -> Answer:
 
 def set_weight(page: Page, given: Arguments) -> Answer:
     """Change the confidence of a rule, or of what it concludes about one output."""
+    weight = given.number("weight")
+    if not 0 <= weight <= 1:
+        raise ValueError(f"weight: must be within [0, 1], got {weight:g}")
     arguments = {
-        "where": _where(page, given),
-        "confidence": given.number("weight"),
+        "where": _rule_at(page, given) if "index" in given else _where(page, given),
+        "confidence": weight,
         "symmetric": given.flag("symmetric"),
     }
     if "output" in given:
@@ -98,17 +102,21 @@ def set_weight(page: Page, given: Arguments) -> Answer:
 
 
 def _where(page: Page, given: Arguments) -> dict[str, str]:
-    """Conditions of a rule: of a cell by row and column, of any rule by its place from 0."""
+    """Conditions of the rule of a cell, by row and column."""
     rules = page.session.reading.rules
     layout = rules.layout
-    if "index" in given:
-        return dict(rules.rules[given.whole("index", 0, len(rules.rules) - 1)].conditions)
     if layout is None:
-        raise ValueError("index: is missing; the rules are a list, not a table")
+        raise ValueError("row: there is none, the rules are a list, not a table; use their index")
     return {
         layout.rows: _set_at(given, "row", rules.input(layout.rows).set_names),
         layout.columns: _set_at(given, "column", rules.input(layout.columns).set_names),
     }
+
+
+def _rule_at(page: Page, given: Arguments) -> dict[str, str]:
+    """Conditions of a rule, by its place from 0."""
+    rules = page.session.reading.rules.rules
+    return dict(rules[given.whole("index", 0, len(rules) - 1)].conditions)
 
 
 def _set_at(given: Arguments, name: str, sets: tuple[str, ...]) -> str:
@@ -121,7 +129,7 @@ def _set_at(given: Arguments, name: str, sets: tuple[str, ...]) -> str:
 
 def set_rule(page: Page, given: Arguments) -> Answer:
     """Change the conclusions of a rule, by its place from 0."""
-    arguments = {"where": _where(page, given), "says": given.text("text")}
+    arguments = {"where": _rule_at(page, given), "says": given.text("text")}
     return _edit(page, "cell", {**arguments, "symmetric": given.flag("symmetric")})
 
 
@@ -140,7 +148,7 @@ def add_rule(page: Page, given: Arguments) -> Answer:
 
 def remove_rule(page: Page, given: Arguments) -> Answer:
     """Remove a rule from a list, by its place from 0."""
-    return _edit(page, "remove-rule", {"where": _where(page, given)})
+    return _edit(page, "remove-rule", {"where": _rule_at(page, given)})
 
 
 def set_shape(page: Page, given: Arguments) -> Answer:

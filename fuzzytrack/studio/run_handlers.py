@@ -10,9 +10,10 @@ import numpy as np
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.specs import split
-from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.arguments import Arguments, renamed
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
+from fuzzytrack.studio.notes import noted
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.run_jobs import Run, run_work
 from fuzzytrack.studio.run_results import paired_as_json
@@ -74,18 +75,23 @@ def cancel(page: Page, given: Arguments) -> Answer:
 
 def walk_run(page: Page, given: Arguments) -> Later:
     """One run of one tracker, plot by plot, with the plots that the experiment has in it."""
-    make = trackers_of(page, [given.text("tracker")])
+    text = given.text("tracker")
+    with renamed(trackers="tracker"):
+        make = trackers_of(page, [text])
     seed = given.whole("seed", 0, _MOST_SEED, 0)
     number = given.whole("run", 0, MOST_RUNS - 1, 0)
     page.session.check_loads("scenario")
     scenario = page.session.reading.scenario
 
     def work() -> Answer:
-        (tracker,) = make().values()
-        times, true, _, plots = simulated_runs(scenario, seed, range(number, number + 1))
+        with renamed(trackers="tracker", truth=None):
+            (tracker,) = make().values()
+            times, true, _, plots = simulated_runs(scenario, seed, range(number, number + 1))
         sigma = np.broadcast_to(plots.sigma, plots.z.shape)
         time = times if times.ndim == 1 else times[:, 0]
-        return walk(tracker, time, plots.z[:, 0], sigma[:, 0], true[:, 0])
+        with noted() as notes:
+            found = walk(tracker, time, plots.z[:, 0], sigma[:, 0], true[:, 0])
+        return {**found, "notes": notes}
 
     return Later(work)
 

@@ -104,6 +104,10 @@ def with_sampling(text: str, given: Mapping[str, Entry]) -> str:
 
 def _with_entries(text: str, section: str, given: Mapping[str, Entry], drop: Sequence[str]) -> str:
     """Text with entries of a part of it set, or added, and others removed."""
+    if section_of(text, section) is None:
+        # That it is no YAML is said with its place.
+        Document(text, "<text>", failure=ScenarioError)
+        raise ScenarioError(f"the text has no {section} to be changed; mend it first, or undo")
     for name, value in given.items():
         text = set_value(text, [section, name], value, failure=ScenarioError)
     for name in dict.fromkeys(drop):

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import signal
 import socket
 import threading
 from collections.abc import Callable
 from importlib import import_module
+from types import FrameType
 from typing import TYPE_CHECKING
 
 import uvicorn
@@ -15,8 +18,9 @@ import uvicorn
 from fuzzytrack.studio.access import Access, check_token, new_token
 from fuzzytrack.studio.app import make_app
 from fuzzytrack.studio.folder import Folder
-from fuzzytrack.studio.jobs import warnings_to_jobs
 from fuzzytrack.studio.limits import MESSAGE_BYTES
+from fuzzytrack.studio.memory import give_back_at_once
+from fuzzytrack.studio.notes import warnings_to_notes
 
 if TYPE_CHECKING:
     from fuzzytrack.studio.pages import Studio
@@ -65,13 +69,17 @@ def serve(
             "token of your own too"
         )
     token = new_token() if token is None else check_token(token)
+    give_back_at_once()
     studio = StudioOnce(Folder(folder), command)
     with listen(host or LOCAL, port) as listening:
         access = Access(host or LOCAL, listening.getsockname()[1], token)
         server = make_server(studio, access)
-        threading.Thread(target=studio.warm, daemon=True).start()
-        started(f"http://{_written(access)}/#token={token}")
-        with contextlib.suppress(KeyboardInterrupt), warnings_to_jobs():
+        if hasattr(signal, "SIGHUP"):
+            # The terminal was closed.
+            signal.signal(signal.SIGHUP, server.handle_exit)
+        with contextlib.suppress(KeyboardInterrupt), warnings_to_notes():
+            threading.Thread(target=studio.warm, daemon=True).start()
+            started(f"http://{_written(access)}/#token={token}")
             server.run(sockets=[listening])
 
 
@@ -122,7 +130,19 @@ def make_server(studio: Callable[[], Studio], access: Access) -> uvicorn.Server:
         ws_per_message_deflate=False,
         timeout_graceful_shutdown=1,
     )
-    return uvicorn.Server(config)
+    return _Server(config)
+
+
+class _Server(uvicorn.Server):
+    """A server that a signal ends in order, however often it comes.
+
+    After a second Ctrl-C that of uvicorn leaves out the end of the application, which ends the
+    processes; and it raises a signal again, which ends this process before they are told.
+    """
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """End when all that has been asked for is answered, or after a second."""
+        self.should_exit = True
 
 
 def _written(access: Access) -> str:
@@ -138,7 +158,14 @@ def listen(host: str, port: int | None) -> socket.socket:
     for each in ports:
         try:
             return socket.create_server((host, each), family=family)
+        except UnicodeError:
+            raise ValueError(f"host: {host!r} is no name of a computer, and no address") from None
         except OSError as error:
             failure = error
-    what = f"cannot listen at {host}, port {ports[-1]}: {failure.strerror}"
+    # Errors of names have numbers of their own, below 0.
+    if (failure.errno or 0) < 0 or failure.errno == errno.EADDRNOTAVAIL:
+        raise ValueError(f"host: {host!r} is no address of this computer; give one that it has")
+    # The text of the error repeats the address.
+    why = os.strerror(failure.errno or errno.EIO)
+    what = f"cannot listen at {host}, port {ports[-1]}: {why}"
     raise ValueError(f"port: {what}; give another, or 0 for any free one")

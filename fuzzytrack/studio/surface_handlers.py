@@ -15,7 +15,7 @@ from fuzzytrack.gains.covariance_certificate import CovarianceCertificate
 from fuzzytrack.gains.polygons import convex_hull
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs, gains_of
 from fuzzytrack.schedulers.reachable_gains import certify, sequence_steps
-from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.arguments import Arguments, renamed
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_POINTS
 from fuzzytrack.studio.messages import Layers
@@ -44,7 +44,8 @@ def surface(page: Page, given: Arguments) -> Later:
     session = page.session
 
     def work() -> Layers:
-        found = session.surfaces(names, columns, inputs=inputs, at=at, less=less)
+        with renamed(names="outputs", less="against", name="against"):
+            found = session.surfaces(names, columns, inputs=inputs, at=at, less=less)
         return Layers(np.stack([found.values[name].T for name in names]))
 
     return Later(work)
@@ -99,12 +100,14 @@ def gains(page: Page, given: Arguments) -> Later:
 
     def work() -> Answer:
         reached = _reached(system)
+        with renamed(truth=None):
+            gains_seen = [] if run is None else visited_gains(run, system.rules)
         return {
             # α = 0, β = 0 and β = 4 - 2α bound the stable gains.
             "triangle": [[0.0, 0.0], [2.0, 0.0], [0.0, 4.0]],
             "reachable": reached,
             "hull": convex_hull(reached) if len(reached) > 2 else reached,
-            "visited": [] if run is None else visited_gains(run, system.rules),
+            "visited": gains_seen,
         }
 
     return Later(work)
@@ -174,7 +177,8 @@ def visits(page: Page, given: Arguments) -> Later:
     run, rules = page.run, page.session.reading.rules
 
     def work() -> Answer:
-        return visited_cells(run, rules)
+        with renamed(truth=None):
+            return visited_cells(run, rules)
 
     return Later(work)
 

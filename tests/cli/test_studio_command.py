@@ -26,7 +26,7 @@ def test_without_the_extra_it_says_what_to_install(fails, monkeypatch, missing):
         (["no-such-folder"], "there is no folder no-such-folder"),
         (["--host", "0.0.0.0"], "--host and --token: others can reach"),
         (["--host", "127.0.0.1", "--token", "short"], "--token: needs 16 or more"),
-        (["--host", "no.such.host.invalid", "--token", "x" * 20], "cannot listen at"),
+        (["--host", "no.such.host.invalid", "--token", "x" * 20], "is no address of this"),
         (["--plugin", "no-such.py"], "no-such.py"),
     ],
 )

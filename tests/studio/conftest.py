@@ -1,6 +1,9 @@
 import contextlib
 import json
+import re
 import struct
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -65,8 +68,38 @@ class Client:
         return found
 
 
-class Server:
+class Address:
+    """Where a server listens: `host` with its `port`, and the `token` of its start."""
+
+    def connect(self, *, origin=None, token=None, host=None, **options):
+        from websockets.sync.client import connect
+
+        address = f"ws://{host or self.host}/socket"
+        if host is not None:
+            options["address"] = "127.0.0.1", self.port
+        return connect(
+            address,
+            origin=origin or f"http://{self.host}",
+            subprotocols=["fuzzytrack", f"token.{self.token if token is None else token}"],
+            compression=None,
+            proxy=None,
+            max_size=None,
+            **options,
+        )
+
+    @contextlib.contextmanager
+    def page(self, session=None):
+        """A client that has said hello, with what it was told as `hello`."""
+        with self.connect() as socket:
+            client = Client(socket)
+            client.hello = client.ask("hello", session=session)
+            yield client
+
+
+class Server(Address):
     """A server of the studio in this process, at a port of its own."""
+
+    token = TOKEN
 
     def __init__(self, folder):
         from fuzzytrack.studio.access import Access
@@ -83,30 +116,6 @@ class Server:
             target=self.server.run, kwargs={"sockets": [self.listening]}, daemon=True
         )
         self.thread.start()
-
-    def connect(self, *, origin=None, token=TOKEN, host=None, **options):
-        from websockets.sync.client import connect
-
-        address = f"ws://{host or self.host}/socket"
-        if host is not None:
-            options["address"] = "127.0.0.1", self.port
-        return connect(
-            address,
-            origin=origin or f"http://{self.host}",
-            subprotocols=["fuzzytrack", f"token.{token}"],
-            compression=None,
-            proxy=None,
-            max_size=None,
-            **options,
-        )
-
-    @contextlib.contextmanager
-    def page(self, session=None):
-        """A client that has said hello, with what it was told as `hello`."""
-        with self.connect() as socket:
-            client = Client(socket)
-            client.hello = client.ask("hello", session=session)
-            yield client
 
     def close(self):
         self.server.should_exit = True
@@ -140,6 +149,46 @@ def new_server():
     yield start
     for each in made:
         each.close()
+
+
+class Program(Address):
+    """A server of the studio as a program of its own, at a port of its own."""
+
+    def __init__(self, folder, *options):
+        words = [sys.executable, "-m", "fuzzytrack", "studio", folder, "--no-browser", *options]
+        self.process = subprocess.Popen(
+            [*map(str, words), "--port", "0"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            encoding="utf-8",
+        )
+        line = self.process.stdout.readline()
+        found = re.fullmatch(r"studio at http://(127\.0\.0\.1:(\d+))/#token=([\w-]+)\n", line)
+        assert found, line + self.process.stdout.read()
+        self.host, self.port, self.token = found[1], int(found[2]), found[3]
+        assert self.process.stdout.readline() == "stop it with Ctrl-C\n"
+
+    def end(self):
+        """What it has printed; it has been told to end."""
+        printed, _ = self.process.communicate(timeout=60)
+        return printed
+
+
+@pytest.fixture
+def new_program():
+    """Start a program for a folder; it is killed with the test."""
+    pytest.importorskip("uvicorn", reason="needs the extra studio")
+    made = []
+
+    def start(*words):
+        made.append(Program(*words))
+        return made[-1]
+
+    yield start
+    for each in made:
+        each.process.kill()
+        each.process.communicate()
 
 
 @pytest.fixture

@@ -7,7 +7,8 @@ import pytest
 
 from fuzzytrack.errors import TrackWarning
 from fuzzytrack.studio import jobs
-from fuzzytrack.studio.jobs import Jobs, warnings_to_jobs
+from fuzzytrack.studio.jobs import Jobs
+from fuzzytrack.studio.notes import warnings_to_notes
 
 
 class Reports:
@@ -99,8 +100,6 @@ def test_warnings_in_a_job_become_its_notes(found):
             warnings.warn("the gains do not suit", TrackWarning, stacklevel=1)
         return {"notes": job.notes}
 
-    with warnings_to_jobs():
+    with warnings_to_notes():
         found.start("run", 1, work, reports)
         assert reports.end()["results"] == {"notes": ["the gains do not suit"]}
-    with warnings_to_jobs(), pytest.warns(TrackWarning):
-        warnings.warn("somewhere else", TrackWarning, stacklevel=1)

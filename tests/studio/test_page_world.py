@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
-from fuzzytrack.studio.jobs import warnings_to_jobs
+from fuzzytrack.studio.notes import warnings_to_notes
 from fuzzytrack.testbed.montecarlo import monte_carlo
 
 playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
@@ -166,7 +166,7 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server):
         "radar.csv: no columns x, y.Use range, azimuth as range and azimuth"
     )
     studio.get_by_role("button", name="Use range, azimuth as range and azimuth").click()
-    with warnings_to_jobs():
+    with warnings_to_notes():
         studio.get_by_role("button", name="Use track as the track column").click()
     facts = studio.locator("#pane-data .what")
     expect(facts).to_contain_text("6 tracks", timeout=60_000)

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
 from fuzzytrack.fuzzy.loading import loads_rulebase
-from fuzzytrack.studio.jobs import warnings_to_jobs
+from fuzzytrack.studio.notes import warnings_to_notes
 
 TRACKERS = ["fixed:alpha=0.5377:beta=0.2018", "stiffness-damping"]
 
@@ -120,7 +120,7 @@ def test_polar_plots_are_tracked_as_by_the_command(page, server, tmp_path):
 def test_warnings_about_tracks_are_notes_with_the_names_of_trackers(page, server):
     path = server.folder / "radar.csv"
     CliRunner().invoke(app, ["sample", "radar", "-o", str(path)])
-    with warnings_to_jobs():
+    with warnings_to_notes():
         found = page.ask(
             "track", name="radar.csv", trackers=["editor", *TRACKERS], polar=["range", "azimuth"]
         )

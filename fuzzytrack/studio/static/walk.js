@@ -49,6 +49,7 @@ export function mount(element, app) {
   const innovationKey = html("span", {});
   const gainKey = html("span", {});
   const instead = html("p", { class: "note", role: "status" });
+  const notes = html("ul", { class: "notes", tabindex: 0, "aria-label": "Notes", hidden: true });
   const body = html(
     "div",
     { class: "pictures" },
@@ -75,6 +76,7 @@ export function mount(element, app) {
       when,
     ),
     instead,
+    notes,
     body,
   );
 
@@ -99,6 +101,8 @@ export function mount(element, app) {
       if (!found) return;
       walk = found;
       tell(null);
+      notes.hidden = !walk.notes.length;
+      notes.replaceChildren(...walk.notes.map((text) => html("li", {}, text)));
       slider.max = String(walk.t.length - 1);
       at = Math.min(at, walk.t.length - 1);
       track.fit();
@@ -113,6 +117,7 @@ export function mount(element, app) {
     instead.textContent = text ?? "";
     instead.hidden = text === null;
     body.hidden = text !== null;
+    notes.hidden = true;
   }
 
   function go(scan) {
