@@ -189,12 +189,11 @@ def renamed(**names: str | None) -> Iterator[None]:
     try:
         yield
     except ValueError as failure:
-        is_placed = isinstance(failure, FileError)
-        said = failure.message if is_placed else str(failure)
+        said = failure.message if isinstance(failure, FileError) else str(failure)
         word, colon, rest = said.partition(": ")
         if not colon or word not in names:
             raise
         said = f"{names[word]}: {rest}" if names[word] else rest
-        if is_placed:
+        if isinstance(failure, FileError):
             raise type(failure)(said, failure.location) from None
         raise ValueError(said) from None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from fuzzytrack.errors import CacheWarning, NoRuleFiresWarning, PluginWarning, TrackWarning
+from fuzzytrack.trackers.base import Tracker
 
-__all__ = ["MOST_NOTES", "noted", "warnings_to_notes"]
+__all__ = ["MOST_NOTES", "by_name", "noted", "warnings_to_notes"]
 
 #: Notes of one piece of work; every run of a tracker may have one.
 MOST_NOTES = 20
@@ -31,11 +32,29 @@ def noted() -> Iterator[list[str]]:
         Filled meanwhile, where `warnings_to_notes` is in force.
     """
     before = getattr(_thread, "notes", None)
-    _thread.notes = notes = []
+    notes: list[str] = []
+    _thread.notes = notes
     try:
         yield notes
     finally:
         _thread.notes = before
+
+
+def by_name(notes: Sequence[str], trackers: Mapping[str, Tracker]) -> list[str]:
+    """Notes with the names of trackers, each once; warnings begin with trackers as Python.
+
+    Parameters
+    ----------
+    notes : sequence of str
+    trackers : mapping of str to Tracker
+        As the page names them.
+    """
+    names: dict[str, list[str]] = {}
+    for text in notes:
+        found = [name for name, each in trackers.items() if text.startswith(f"{each!r}: ")]
+        said = text.removeprefix(f"{trackers[found[0]]!r}: ") if found else text
+        names.setdefault(said, []).extend(found)
+    return [f"{', '.join(each)}: {said}" if each else said for said, each in names.items()]
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -18,7 +18,7 @@ from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.ragged import run_tracks, sigmas_of
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
 from fuzzytrack.studio.folder import naming
-from fuzzytrack.studio.notes import noted
+from fuzzytrack.studio.notes import by_name, noted
 from fuzzytrack.studio.reading_arguments import check_truth
 from fuzzytrack.studio.uploads import check_plots
 from fuzzytrack.testbed.marks import best_of
@@ -157,20 +157,10 @@ def tracked_as_json(used: UsedPlots, trackers: Mapping[str, Tracker]) -> dict[st
     summary = summary_of(used)
     return {
         **summary,
-        "notes": [*summary["notes"], *_by_name(warned, trackers)],
+        "notes": [*summary["notes"], *by_name(warned, trackers)],
         "drawn": drawn,
         "comparison": _comparison_as_json(compared),
     }
-
-
-def _by_name(warned: Sequence[str], trackers: Mapping[str, Tracker]) -> list[str]:
-    """Warnings with the names of the trackers, each once; they begin with those as Python."""
-    names: dict[str, list[str]] = {}
-    for text in warned:
-        found = [name for name, each in trackers.items() if text.startswith(f"{each!r}: ")]
-        said = text.removeprefix(f"{trackers[found[0]]!r}: ") if found else text
-        names.setdefault(said, []).extend(found)
-    return [f"{', '.join(each)}: {said}" if each else said for said, each in names.items()]
 
 
 def _drawn(used: UsedPlots) -> list[Track]:

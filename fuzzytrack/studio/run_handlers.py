@@ -13,7 +13,7 @@ from fuzzytrack.specs import split
 from fuzzytrack.studio.arguments import Arguments, renamed
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
-from fuzzytrack.studio.notes import noted
+from fuzzytrack.studio.notes import by_name, noted
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.run_jobs import Run, run_work
 from fuzzytrack.studio.run_results import paired_as_json
@@ -85,13 +85,14 @@ def walk_run(page: Page, given: Arguments) -> Later:
 
     def work() -> Answer:
         with renamed(trackers="tracker", truth=None):
-            (tracker,) = make().values()
+            trackers = make()
+            (tracker,) = trackers.values()
             times, true, _, plots = simulated_runs(scenario, seed, range(number, number + 1))
         sigma = np.broadcast_to(plots.sigma, plots.z.shape)
         time = times if times.ndim == 1 else times[:, 0]
         with noted() as notes:
             found = walk(tracker, time, plots.z[:, 0], sigma[:, 0], true[:, 0])
-        return {**found, "notes": notes}
+        return {**found, "notes": by_name(notes, trackers)}
 
     return Later(work)
 

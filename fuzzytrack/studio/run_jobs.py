@@ -10,6 +10,7 @@ from typing import Any
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.studio.jobs import Job, Work
 from fuzzytrack.studio.limits import check_runs_fit
+from fuzzytrack.studio.notes import by_name
 from fuzzytrack.studio.run_results import operations, results_as_json
 from fuzzytrack.testbed.montecarlo import monte_carlo
 from fuzzytrack.testbed.results import Results
@@ -78,7 +79,7 @@ def run_work(run: Run) -> Work:
             executor=pool,
         )
         run.results = found
-        return {**results_as_json(found, counts), "notes": job.notes}
+        return {**results_as_json(found, counts), "notes": by_name(job.notes, run.trackers)}
 
     return work
 
