@@ -227,6 +227,10 @@ class Folder:
             for old in self.drafts()[MAX_DRAFTS:]:
                 self._draft(old).unlink(missing_ok=True)
 
+    def drop_draft(self, key: str) -> None:
+        """Remove a draft, if it is there."""
+        self._draft(key).unlink(missing_ok=True)
+
     def _draft(self, key: str) -> Path:
         if not isinstance(key, str) or not _KEY.fullmatch(key):
             raise FolderError(

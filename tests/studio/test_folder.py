@@ -97,7 +97,7 @@ def test_drafts(folder):
     assert len(folder.drafts()) == MAX_DRAFTS
     assert folder.draft("9") == "text 9"
     assert folder.list() == []
-    (folder.path / ".draft-9.json").unlink()
+    folder.drop_draft("9")
     with pytest.raises(FolderError, match="draft 9: cannot be opened"):
         folder.draft("9")
     with pytest.raises(FolderError, match="must be up to 32 digits and small letters"):
