@@ -13,6 +13,7 @@ LOWEST_TESTS ?= tests/test_public_names.py tests/cli/test_app.py tests/cli/test_
 FUZZ_COUNT ?= 1000000
 FUZZ_FILES ?= 100000
 BENCH_ARGS ?=
+ARM_ARGS ?=
 PIP_ARGS ?=
 
 BIN := $(VENV)/bin
@@ -23,7 +24,7 @@ export MPLBACKEND ?= Agg
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help environment lowest-environment install demo walk test lowest constraints referee lint format docs fuzz bench clean distclean
+.PHONY: help environment lowest-environment install demo walk test lowest constraints referee lint format docs fuzz bench arm clean distclean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -113,6 +114,9 @@ fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule
 
 bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)
 	$(BIN)/python -m benchmarks $(BENCH_ARGS)
+
+arm: $(VENV)/.installed ## Run exported C on an emulated ARM Cortex-M4, and print its sizes (ARM_ARGS="-o FILE")
+	$(BIN)/python tests/arm/selftests.py $(ARM_ARGS)
 
 # ---------------------------------------------------------------- tidying
 
