@@ -36,6 +36,12 @@ def export(
             help="Numbers of inputs and outputs; q15 are integers of 16 bits over the universes.",
         ),
     ] = "double",
+    filter: Annotated[
+        bool, typer.Option("--filter", help="Write the whole tracker, too; not with q15.")
+    ] = False,
+    axes: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Axes of space of the tracker.")
+    ] = 2,
     table: Annotated[
         bool,
         typer.Option(
@@ -56,7 +62,15 @@ def export(
         raise ValueError(f"--to: unknown language {to!r}; one of {', '.join(LANGUAGES)}")
     folder = output_folder(output, force=force)
     with progress("Measuring errors") as report:
-        made = export_c(name, number=number, table=table, nodes=nodes, progress=report)
+        made = export_c(
+            name,
+            number=number,
+            filter=filter,
+            axes=axes,
+            table=table,
+            nodes=nodes,
+            progress=report,
+        )
     made.write(folder)
     written = [str(folder / file) for file in made.files]
     if json:
@@ -80,6 +94,11 @@ def _summary(figures: Mapping[str, Any]) -> list[str]:
             f"bound {show(error['bound'], 3)}{unit}"
         )
     stack = "" if figures["ram_bytes"] is None else f", stack {figures['ram_bytes']} bytes"
+    moving = figures.get("filter")
+    if moving:
+        errors = ", ".join(f"{word} {show(e, 2)}" for word, e in moving["errors"].items())
+        filter_line = f"filter      {moving['ram_bytes_per_track']} bytes a track; error {errors}"
+        lines.append(filter_line)
     return [
         *lines,
         f"memory      ROM {figures['rom_bytes']} bytes and the code{stack}",

@@ -188,6 +188,65 @@ def test_what_cannot_be_exported_is_refused(options, message):
         export_c("valve", **options)
 
 
+# -------------------------------------------------------------------- filters
+
+
+@compiled
+@pytest.mark.parametrize("name", ["stiffness-damping", "maneuver", "omega-schedule"])
+def test_a_filter_passes_its_self_test(name, tmp_path):
+    made = export_c(name, filter=True, random=100)
+    assert made.figures["filter"]["axes"] == 2
+    assert made.figures["filter"]["errors"] == {"position": 1e-9, "velocity": 1e-9}
+    made.write(tmp_path)
+    for compiler in COMPILERS:
+        done = run(tmp_path, f"{name}_selftest.c", compiler)
+        assert (done.returncode, done.stderr) == (0, ""), done.stdout
+
+
+@compiled
+@pytest.mark.untraced
+def test_a_filter_of_floats_is_within_its_stated_bound(tmp_path):
+    made = export_c("chan-style", number="float", filter=True, axes=3, random=100)
+    errors = made.figures["filter"]["errors"]
+    assert 1e-4 < errors["position"] < 0.1
+    assert f"position {errors['position']:.1g} m" in made.header
+    made.write(tmp_path)
+    done = run(tmp_path, "chan-style_selftest.c", COMPILERS[0])
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout
+
+
+@compiled
+@pytest.mark.parametrize(
+    "subject",
+    [ft.FixedGains(0.5, 0.2), ft.AlphaBetaTracker("kalman-cv:sigma_v=0.5", start="one-point")],
+)
+def test_any_scheduler_or_tracker_is_exported_as_a_filter(subject, tmp_path):
+    made = export_c(subject, axes=1)
+    assert made.name == type(subject).__name__
+    made.write(tmp_path)
+    done = run(tmp_path, f"{made.name}_selftest.c", COMPILERS[0])
+    assert (done.returncode, done.stdout.count("\n")) == (0, 1)
+    # A filter that is wrong is found.
+    broken = re.sub(r"\* 1\.0;|\+ b\[", lambda m: m[0].replace("+", "-"), made.header)
+    assert broken != made.header
+    (tmp_path / f"{made.name}.h").write_text(broken)
+    assert run(tmp_path, f"{made.name}_selftest.c", COMPILERS[0]).returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("subject", "options", "message"),
+    [
+        ("valve", {"filter": True}, "valve cannot schedule gains: no scheduler setting"),
+        ("stiffness-damping", {"filter": True, "number": "q15"}, "filter: there is none in integ"),
+        ("stiffness-damping", {"filter": True, "axes": 0}, "axes must be a whole number >= 1"),
+        (ft.FixedGains(0.5, 0.2), {"number": "q15"}, "filter: there is none in integers"),
+    ],
+)
+def test_what_has_no_filter_is_refused(subject, options, message):
+    with pytest.raises(ValueError, match=message):
+        export_c(subject, **options)
+
+
 # -------------------------------------------------------------------- the command
 
 
@@ -220,6 +279,7 @@ def test_the_command_writes_and_says_so(tmp_path):
         (("valve", "--to", "ada"), "--to: unknown language 'ada'; one of c99"),
         (("valve", "--to", "c99", "--number", "q31"), "--number: unknown 'q31'"),
         (("valve", "--to", "c99", "--nodes", "3"), "--nodes: valve is tabulated"),
+        (("maneuver", "--to", "c99", "--number", "q15", "--filter"), "--filter: there is none"),
         (("valfe", "--to", "c99"), "unknown rule base 'valfe'"),
         (("valve",), "Missing option '--to'"),
     ],

@@ -1,4 +1,4 @@
-"""Rule bases written as C99: a header, and a program that checks it."""
+"""Rule bases and trackers written as C99: a header, and a program that checks it."""
 
 from __future__ import annotations
 
@@ -15,11 +15,15 @@ from fuzzytrack.fuzzy.as_json import rulebase_as_json
 from fuzzytrack.fuzzy.loading import as_rulebase, rulebase_path
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.interop.c99.c_program import CProgram
 from fuzzytrack.interop.c99.error_bound import RANDOM_INPUTS, ErrorBound, error_bound
+from fuzzytrack.interop.c99.filter_export import FilterExport, filter_export
 from fuzzytrack.interop.c99.formulas import Formulas, formulas
 from fuzzytrack.interop.c99.grid_table import breakpoint_table
 from fuzzytrack.interop.c99.header import (
     about_bound,
+    about_file,
+    about_number,
     about_operations,
     about_rules,
     about_variables,
@@ -27,13 +31,17 @@ from fuzzytrack.interop.c99.header import (
 )
 from fuzzytrack.interop.c99.identifiers import c_identifier
 from fuzzytrack.interop.c99.number_types import NumberType, number_type
-from fuzzytrack.interop.c99.selftest import selftest_text
+from fuzzytrack.interop.c99.selftest import Check, infer_check, selftest_text
 from fuzzytrack.interop.c99.signature import signature
 from fuzzytrack.interop.c99.tabulated import Tabulated, tabulated
 from fuzzytrack.interop.c99.vectors import vectors
 from fuzzytrack.json_types import plain
 from fuzzytrack.reprs import summary
+from fuzzytrack.schedulers.base import GainScheduler
+from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
 from fuzzytrack.tasks import Progress
+from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
+from fuzzytrack.trackers.lane_tracker import LaneTracker
 
 __all__ = ["CExport", "export_c"]
 
@@ -89,23 +97,32 @@ class CExport:
 
 
 def export_c(
-    rules: RuleBase | str | os.PathLike[str],
+    subject: RuleBase | GainScheduler | LaneTracker | str | os.PathLike[str],
     *,
     number: str = "double",
+    filter: bool = False,
+    axes: int = 2,
     table: bool = False,
     nodes: int | None = None,
     name: str | None = None,
     random: int = RANDOM_INPUTS,
     progress: Progress | None = None,
 ) -> CExport:
-    """Write a rule base as C99.
+    """Write a rule base, a scheduler or a tracker as C99.
 
     Parameters
     ----------
-    rules : RuleBase, str or path
-        A rule base; or the name of a shipped one or the path of a file.
+    subject : RuleBase, GainScheduler, LaneTracker, str or path
+        A rule base; or the name of a shipped one or the path of a file; or a scheduler, which
+        stands for a `fuzzytrack.AlphaBetaTracker` with its gains, or a tracker. Of these two the
+        whole filter is written.
     number : {"double", "float", "q15"}
-        Type of inputs and outputs; ``q15`` are integers of 16 bits over the universes.
+        Type of inputs and outputs; ``q15`` are integers of 16 bits over the universes, for rule
+        bases without a filter.
+    filter : bool
+        Whether the whole tracker of a rule base is written beside it.
+    axes : int
+        Axes of space of a filter.
     table : bool
         Whether a rule base that no table at its break points fits is tabulated on a finer grid,
         with an error that is measured, rather than written as formulas. Integers always are.
@@ -113,11 +130,11 @@ def export_c(
         Nodes on each input of such a table; about 4,300 in all unless given.
     name : str, optional
         Name of the files and beginning of all names in C; that of the file or rule base unless
-        given.
+        given, or of the class of a scheduler or tracker.
     random : int
-        Random inputs at which the error is measured.
+        Random inputs at which the error of a rule base is measured.
     progress : callable, optional
-        Called with the share of the work that is done.
+        Called with the share of that which is done.
 
     Returns
     -------
@@ -128,9 +145,11 @@ def export_c(
     ------
     RuleBaseError
         If there is no such rule base; or with integers no rule fires somewhere and an output has no
-        default.
+        default; or it has no settings for a filter.
+    TranslationError
+        If a scheduler or tracker uses what cannot be written in C; says where.
     ValueError
-        If a parameter is out of range, or the rule base cannot be written with these numbers.
+        If a parameter is out of range, or these numbers cannot be used.
 
     Notes
     -----
@@ -146,13 +165,18 @@ def export_c(
     kind = number_type(number)
     if random < 1:
         raise ValueError(f"random: at least 1 input is needed, got {random}")
-    source, loaded, own = _source(rules)
-    called = own if name is None else name
-    if re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", called) is None:
-        called = c_identifier(called, "rules")
-    prefix = c_identifier(called, "rules")
-    system = FuzzySystem(loaded)
-    names = signature(loaded, prefix, kind.c_type)
+    if isinstance(subject, GainScheduler | LaneTracker):
+        return _tracker_export(subject, kind, axes, name)
+    source, rules, own = _source(subject)
+    called, prefix = _names(own if name is None else name)
+    moving = None
+    if filter:
+        if kind.whole:
+            raise ValueError("filter: there is none in integers; use the number double or float")
+        tracker = AlphaBetaTracker(FuzzyScheduler(rules))
+        moving = filter_export(tracker, kind, name=f"{prefix}_filter", axes=axes)
+    system = FuzzySystem(rules)
+    names = signature(rules, prefix, kind.c_type)
     made = _method(system, kind, table, nodes)
     program = made.program(names)
     checked = vectors(system, kind, made.nodes)
@@ -160,33 +184,73 @@ def export_c(
     bound = error_bound(system, kind, made.evaluate, checked, random=tried, progress=progress)
     silent = made.silent
     about = [
-        *about_rules(loaded, source, kind),
-        *about_variables(loaded, names, kind, silent),
+        *about_rules(rules, source, kind),
+        *about_variables(rules, names, kind, silent),
         ("Method", made.words),
         *about_bound(names, kind, bound, len(checked.inputs), bool(silent)),
         *about_operations(program),
     ]
-    header = f"{called}.h"
-    files = {
-        header: header_text(prefix, about, [program]),
-        f"{called}_selftest.c": selftest_text(loaded.name, header, names, kind, checked, bound),
-    }
     figures = {
-        "name": called,
-        "prefix": prefix,
-        "number": number,
-        "files": list(files),
         "rule_base": source,
         "method": made.method,
         "nodes": [len(n) for n in made.nodes],
-        "errors": _errors(loaded, bound),
+        "errors": _errors(rules, bound),
         "random_inputs": bound.random or "all",
         "vectors": len(checked.inputs),
         "rom_bytes": program.constants_bytes,
         "ram_bytes": program.state_bytes,
         "operations": dict(program.operations),
     }
-    return CExport(called, prefix, number, files, figures)
+    checks = [infer_check(names, kind, checked, bound)]
+    return _whole(called, prefix, kind, about, [program], checks, figures, moving)
+
+
+def _tracker_export(
+    subject: GainScheduler | LaneTracker, kind: NumberType, axes: int, name: str | None
+) -> CExport:
+    """A scheduler or tracker, of which there is the filter only."""
+    tracker = AlphaBetaTracker(subject) if isinstance(subject, GainScheduler) else subject
+    called, prefix = _names(type(subject).__name__ if name is None else name)
+    moving = filter_export(tracker, kind, name=f"{prefix}_filter", axes=axes)
+    digest = hashlib.sha256(moving.translation.definitions.encode()).hexdigest()
+    about = [
+        *about_file(called, repr(tracker)),
+        ("Written from", f"its step; SHA-256 of the definitions below {digest}"),
+        about_number(kind),
+    ]
+    return _whole(called, prefix, kind, about, [], [], {"tracker": repr(tracker)}, moving)
+
+
+def _whole(
+    called: str,
+    prefix: str,
+    kind: NumberType,
+    about: list[tuple[str, str]],
+    programs: list[CProgram],
+    checks: list[Check],
+    figures: dict[str, Any],
+    moving: FilterExport | None,
+) -> CExport:
+    """The files, with those parts of them that are about a filter."""
+    header = f"{called}.h"
+    figures = {"name": called, "prefix": prefix, "number": kind.name, **figures}
+    if moving is not None:
+        about = [*about, *moving.about()]
+        programs = [*programs, moving.program()]
+        checks = [*checks, moving.check()]
+        figures["filter"] = moving.figures()
+    files = {
+        header: header_text(prefix, about, programs),
+        f"{called}_selftest.c": selftest_text(called, header, kind, checks),
+    }
+    return CExport(called, prefix, kind.name, files, {**figures, "files": list(files)})
+
+
+def _names(given: str) -> tuple[str, str]:
+    """Name of the files, and beginning of the names in C."""
+    plain_name = re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", given) is not None
+    called = given if plain_name else c_identifier(given, "rules")
+    return called, c_identifier(called, "rules")
 
 
 def _method(

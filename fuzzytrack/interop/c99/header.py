@@ -13,7 +13,15 @@ from fuzzytrack.interop.c99.number_types import NumberType
 from fuzzytrack.interop.c99.signature import Signature
 from fuzzytrack.version import __version__
 
-__all__ = ["about_bound", "about_operations", "about_rules", "about_variables", "header_text"]
+__all__ = [
+    "about_bound",
+    "about_file",
+    "about_number",
+    "about_operations",
+    "about_rules",
+    "about_variables",
+    "header_text",
+]
 
 
 def header_text(prefix: str, about: Sequence[tuple[str, str]], programs: Sequence[CProgram]) -> str:
@@ -48,21 +56,31 @@ def header_text(prefix: str, about: Sequence[tuple[str, str]], programs: Sequenc
     return "\n".join(lines) + "\n" + definitions + f"\n#endif /* {guard} */\n"
 
 
-def about_rules(rules: RuleBase, source: str, number: NumberType) -> Iterator[tuple[str, str]]:
-    """What it is, and where it comes from."""
-    yield "", f"{rules.name}: {rules.description}" if rules.description else rules.name
+def about_file(name: str, description: str) -> Iterator[tuple[str, str]]:
+    """What it is, and what wrote it."""
+    yield "", f"{name}: {description}" if description else name
     yield "", ""
-    yield "", "Change the rule base and export it again, not this file."
+    yield "", "Change what it was made of and export it again, not this file."
     yield "Written by", f"fuzzytrack {__version__}"
-    yield "Rule base", source
-    if rules.source:
-        yield "After", rules.source
+
+
+def about_number(number: NumberType) -> tuple[str, str]:
+    """Its numbers."""
     kinds = {
         "double": "double (64 bits)",
         "float": "float (32 bits)",
         "q15": "q15 (integers of 16 bits)",
     }
-    yield "Numbers", kinds[number.name]
+    return "Numbers", kinds[number.name]
+
+
+def about_rules(rules: RuleBase, source: str, number: NumberType) -> Iterator[tuple[str, str]]:
+    """What a rule base is, and where it comes from."""
+    yield from about_file(rules.name, rules.description)
+    yield "Rule base", source
+    if rules.source:
+        yield "After", rules.source
+    yield about_number(number)
     yield "", ""
 
 

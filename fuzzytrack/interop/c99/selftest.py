@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,74 +14,99 @@ from fuzzytrack.interop.c99.error_bound import ErrorBound
 from fuzzytrack.interop.c99.number_types import NumberType
 from fuzzytrack.interop.c99.signature import Signature
 from fuzzytrack.interop.c99.vectors import Vectors
+from fuzzytrack.reprs import summary
 
-__all__ = ["selftest_text"]
+__all__ = ["Check", "constant_rows", "infer_check", "selftest_text"]
 
 #: Parts of a step in which expected integers are written.
 _PARTS = 256
 
 
-def selftest_text(
-    name: str,
-    header: str,
-    names: Signature,
-    number: NumberType,
-    checked: Vectors,
-    bound: ErrorBound,
-    more: str = "",
-) -> str:
+@dataclass(frozen=True)
+class Check:
+    """A function that counts wrong values.
+
+    Attributes
+    ----------
+    function : str
+        Its name; it takes nothing and returns an ``unsigned int``.
+    lines : tuple of str
+        Its definition, and its data.
+    values : int
+        How many values it compares.
+    """
+
+    function: str
+    lines: tuple[str, ...]
+    values: int
+
+    def __repr__(self) -> str:
+        return summary(self, "function", "values")
+
+
+def selftest_text(name: str, header: str, number: NumberType, checks: Sequence[Check]) -> str:
     """Source of the program.
 
     Parameters
     ----------
     name : str
-        Name of the rule base, for the line that is printed.
+        For the line that is printed.
     header : str
         Name of the header file.
-    names : Signature
     number : NumberType
-    checked : Vectors
-    bound : ErrorBound
-    more : str
-        Definition of a function ``PREFIX_filter_check`` that returns how many values of a filter
-        are wrong; empty for none.
+    checks : sequence of Check
     """
-    count, n_inputs = checked.inputs.shape
-    n_outputs = len(names.outputs)
-    expected, bounds = _written(number, checked.expected, bound.bounds)
-    wide = "int32_t" if number.whole else number.c_type
     unit = f"1/{_PARTS} of a step" if number.whole else "the unit of an output"
     says = re.sub(r"[^A-Za-z0-9_.-]", "_", name)
     lines = [
         *comment_lines(
             [
                 ("", f"Self-test of {header}: prints one line, and ends with 0 if all is right."),
-                (
-                    "",
-                    f"Expected values are those of the library; they and the bounds are in {unit}.",
-                ),
+                ("", f"Expected values are those of the library. They and bounds are in {unit}."),
             ]
         ),
         *([] if number.whole else ["#include <math.h>"]),
         "#include <stdio.h>",
         f'#include "{header}"',
         "",
+        *_is_wrong(number),
+        "",
+    ]
+    for check in checks:
+        lines += [*check.lines, ""]
+    lines += [
+        "int main(void)",
+        "{",
+        "    unsigned int wrong = 0U;",
+        *(f"    wrong += {check.function}();" for check in checks),
+        "    if (wrong != 0U) {",
+        f'        (void)printf("{says}: %u values are wrong\\n", wrong);',
+        "    } else {",
+        f'        (void)printf("{says}: {sum(c.values for c in checks)} values are right\\n");',
+        "    }",
+        "    return (wrong != 0U) ? 1 : 0;",
+        "}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def infer_check(names: Signature, number: NumberType, checked: Vectors, bound: ErrorBound) -> Check:
+    """Check of the function of a rule base."""
+    count, n_inputs = checked.inputs.shape
+    n_outputs = len(names.outputs)
+    expected, bounds = _written(number, checked.expected, bound.bounds)
+    wide = _wide(number)
+    arguments = ", ".join(f"given[row][{k}]" for k in range(n_inputs))
+    lines = [
         f"/* {', '.join(names.inputs)} */",
-        *_rows(number.c_type, "given", f"[{count}][{n_inputs}]", checked.inputs),
+        *constant_rows(number.c_type, "given", checked.inputs),
         "",
         f"/* {', '.join(names.outputs)} */",
-        *_rows(wide, "expected", f"[{count}][{n_outputs}]", expected),
+        *constant_rows(wide, "expected", expected),
         "",
         f"static const {wide} bound[{n_outputs}] = {{ {', '.join(map(literal, bounds))} }};",
         "",
-    ]
-    if more:
-        lines += [more.rstrip(), ""]
-    arguments = ", ".join(f"given[row][{k}]" for k in range(n_inputs))
-    lines += [
-        *_is_wrong(number, wide),
-        "",
-        "int main(void)",
+        "static unsigned int infer_check(void)",
         "{",
         "    unsigned int wrong = 0U;",
         "    unsigned int row;",
@@ -92,16 +119,14 @@ def selftest_text(
         "            wrong += is_wrong(found[k], expected[row][k], bound[k]);",
         "        }",
         "    }",
-        *([f"    wrong += (unsigned int){names.prefix}_filter_check();"] if more else []),
-        "    if (wrong != 0U) {",
-        f'        (void)printf("{says}: %u values are wrong\\n", wrong);',
-        "    } else {",
-        f'        (void)printf("{says}: {count * n_outputs} values are right\\n");',
-        "    }",
-        "    return (wrong != 0U) ? 1 : 0;",
+        "    return wrong;",
         "}",
     ]
-    return "\n".join(lines) + "\n"
+    return Check("infer_check", tuple(lines), count * n_outputs)
+
+
+def _wide(number: NumberType) -> str:
+    return "int32_t" if number.whole else number.c_type
 
 
 def _written(number: NumberType, expected: Any, bounds: Any) -> tuple[Any, list[Any]]:
@@ -109,11 +134,12 @@ def _written(number: NumberType, expected: Any, bounds: Any) -> tuple[Any, list[
     if number.whole:
         exact = np.rint(expected * _PARTS).astype(np.int64)
         return exact, [np.int64(b) for b in np.ceil(bounds * _PARTS)]
-    # Half a unit in the last place more: the expected value is rounded too.
     return expected.astype(number.dtype), [number.dtype(b) for b in bounds]
 
 
-def _is_wrong(number: NumberType, wide: str) -> list[str]:
+def _is_wrong(number: NumberType) -> list[str]:
+    """Function that compares a value."""
+    wide = _wide(number)
     head = f"static unsigned int is_wrong({number.c_type} found, {wide} wanted, {wide} most)"
     if number.whole:
         return [
@@ -136,7 +162,7 @@ def _is_wrong(number: NumberType, wide: str) -> list[str]:
     ]
 
 
-def _rows(c_type: str, name: str, shape: str, values: Any) -> list[str]:
+def constant_rows(c_type: str, name: str, values: Any) -> list[str]:
     """A constant array of two dimensions, a row to a line, its columns aligned."""
     words = [[_word(v) for v in row] for row in values]
     widths = [max(map(len, column)) for column in zip(*words, strict=True)]
@@ -144,7 +170,8 @@ def _rows(c_type: str, name: str, shape: str, values: Any) -> list[str]:
         "    { " + ", ".join(w.rjust(n) for w, n in zip(row, widths, strict=True)) + " },"
         for row in words
     ]
-    return [f"static const {c_type} {name}{shape} = {{", *lines, "};"]
+    rows, columns = len(words), len(widths)
+    return [f"static const {c_type} {name}[{rows}][{columns}] = {{", *lines, "};"]
 
 
 def _word(value: Any) -> str:

@@ -1,0 +1,206 @@
+"""A whole tracker in an exported header: its source, its error, and its check."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fuzzytrack.arrays import Array
+from fuzzytrack.interop.c99.c_program import CProgram, operations_in_words
+from fuzzytrack.interop.c99.c_text import literal
+from fuzzytrack.interop.c99.filter import FilterTranslation, translated_filter
+from fuzzytrack.interop.c99.number_types import NumberType
+from fuzzytrack.interop.c99.selftest import Check, constant_rows
+from fuzzytrack.reprs import summary
+from fuzzytrack.trackers.lane_tracker import LaneTracker
+
+__all__ = ["FilterExport", "filter_export"]
+
+# Tracks and plots of each at which the error is measured; the first track is the self-test.
+_TRACKS, _PLOTS = 100, 100
+_RADIUS, _SIGMA = 2_000.0, 10.0
+#: In double precision the operations are those of the library, in the same order.
+_DOUBLE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class FilterExport:
+    """A tracker in C.
+
+    Attributes
+    ----------
+    translation : FilterTranslation
+    number : NumberType
+    bounds : tuple of (float, float)
+        Largest error of a position (m), and of a velocity (m/s).
+    times, plots, sigmas, expected : ndarray
+        A track: times, plots and their standard deviations as numbers of C, and what the library
+        gives: positions, then velocities.
+    """
+
+    translation: FilterTranslation
+    number: NumberType
+    bounds: tuple[float, float]
+    times: Array
+    plots: Any
+    sigmas: Any
+    expected: Array
+
+    def __repr__(self) -> str:
+        return summary(self, "translation", "bounds")
+
+    def program(self) -> CProgram:
+        """Source in C."""
+        made = self.translation
+        return CProgram(
+            made.definitions,
+            made.operations,
+            made.constants_bytes,
+            made.stack_bytes,
+            frozenset(made.includes),
+            made.needs,
+        )
+
+    def about(self) -> Iterator[tuple[str, str]]:
+        """What a comment says of it."""
+        made = self.translation
+        sigma = "with" if made.needs_sigma else "without"
+        yield "", ""
+        yield (
+            "Filter",
+            f"{made.name}_init, {made.name}_step: {made.axes} axes, plots in m {sigma} standard "
+            "deviations, times in s; a coordinate that is NaN is missed",
+        )
+        position, velocity = self.bounds
+        yield (
+            "Error bound",
+            f"position {position:.1g} m, velocity {velocity:.1g} m/s: "
+            f"{'twice the largest difference' if self.number.name == 'float' else 'of differences'}"
+            f" from fuzzytrack in double precision over {_TRACKS} turning tracks of {_PLOTS} plots "
+            f"in a circle of {_RADIUS:.0f} m, with noise of {_SIGMA:.0f} m and a tenth missed",
+        )
+        yield "RAM", f"{made.state_bytes} bytes a track; stack: {made.stack_bytes} bytes of numbers"
+        yield "Operations", f"at most {operations_in_words(made.operations)} for a step"
+
+    def figures(self) -> dict[str, Any]:
+        """The same as JSON."""
+        made = self.translation
+        return {
+            "axes": made.axes,
+            "needs_sigma": made.needs_sigma,
+            "errors": dict(zip(("position", "velocity"), self.bounds, strict=True)),
+            "rom_bytes": made.constants_bytes,
+            "ram_bytes_per_track": made.state_bytes,
+            "stack_bytes": made.stack_bytes,
+            "operations": dict(made.operations),
+            "needs": sorted(made.needs),
+        }
+
+    def check(self) -> Check:
+        """Check of a track."""
+        name, c_type, axes = self.translation.name, self.number.c_type, self.translation.axes
+        position, velocity = (literal(self.number.dtype(b)) for b in self.bounds)
+        # An expected value is rounded, too.
+        wanted = self.expected.astype(self.number.dtype)
+        compared = [
+            f"            wrong += is_wrong(track.{word}[k], right[row][{place}], {bound});"
+            for word, place, bound in (
+                ("position", "k", position),
+                ("velocity", f"k + {axes}U", velocity),
+            )
+        ]
+        lines = [
+            "/* Times, plots and standard deviations of a track. */",
+            *constant_rows("double", "times", self.times[:, None]),
+            *constant_rows(c_type, "plots", self.plots),
+            *constant_rows(c_type, "sigmas", self.sigmas),
+            "",
+            "/* Positions, then velocities. */",
+            *constant_rows(c_type, "right", wanted),
+            "",
+            "static unsigned int filter_check(void)",
+            "{",
+            f"    {name}_state track;",
+            "    unsigned int wrong = 0U;",
+            "    unsigned int row;",
+            "    unsigned int k;",
+            f"    {name}_init(&track);",
+            f"    for (row = 0U; row < {len(self.times)}U; row++) {{",
+            f"        if ({name}_step(&track, times[row][0], plots[row], sigmas[row]) != 0) {{",
+            "            wrong += 1U;",
+            "        }",
+            f"        for (k = 0U; k < {axes}U; k++) {{",
+            *compared,
+            "        }",
+            "    }",
+            "    return wrong;",
+            "}",
+        ]
+        return Check("filter_check", tuple(lines), wanted.size)
+
+
+def filter_export(
+    tracker: LaneTracker, number: NumberType, *, name: str, axes: int
+) -> FilterExport:
+    """Write a tracker in C, and measure its error.
+
+    Parameters
+    ----------
+    tracker : LaneTracker
+    number : NumberType
+        ``double`` or ``float``.
+    name : str
+        With which all names begin.
+    axes : int
+        Axes of space.
+
+    Raises
+    ------
+    TranslationError
+        If the tracker cannot be written in C.
+    ValueError
+        If the numbers are integers, or `axes` is less than 1.
+
+    Notes
+    -----
+    With numbers of 32 bits the error is that of the library in single precision, which does the
+    same operations.
+    """
+    if number.whole:
+        raise ValueError("filter: there is none in integers; use the number double or float")
+    made = translated_filter(tracker, name=name, axes=axes, number=number.name)
+    times, plots, sigmas = _tracks(axes, number)
+    run = tracker.run(times, plots.astype(float), sigmas.astype(float))
+    bounds = (_DOUBLE, _DOUBLE)
+    if number.name == "float":
+        single = tracker.run(times, plots, sigmas, dtype=np.float32)
+        bounds = (
+            _twice_apart(single.filtered, run.filtered),
+            _twice_apart(single.velocity, run.velocity),
+        )
+    expected = np.concatenate([run.filtered[:, 0], run.velocity[:, 0]], axis=1)
+    return FilterExport(made, number, bounds, times, plots[:, 0], sigmas[:, 0], expected)
+
+
+def _tracks(axes: int, number: NumberType) -> tuple[Array, Any, Any]:
+    """Times, and plots of turning targets with their noise, in numbers of C."""
+    random = np.random.default_rng(1)
+    times = np.cumsum(random.uniform(0.5, 1.5, _PLOTS)).round(3)
+    turning = random.normal(0.0, 0.02, (_PLOTS, _TRACKS)).cumsum(axis=0) * 0.2
+    angle = turning.cumsum(axis=0) + random.uniform(0, 6, _TRACKS)
+    phases = np.arange(axes) * np.pi / 2
+    plots = _RADIUS * np.cos(angle[..., None] + phases)
+    sigmas = random.uniform(0.5 * _SIGMA, 1.5 * _SIGMA, plots.shape)
+    plots = plots + random.normal(size=plots.shape) * sigmas
+    missed = random.random((_PLOTS, _TRACKS)) < 0.1
+    plots[missed] = np.nan
+    return times, plots.astype(number.dtype), sigmas.astype(number.dtype)
+
+
+def _twice_apart(single: Any, exact: Array) -> float:
+    """Twice the largest difference, which is taken to be one rounding at the least."""
+    rounding = float(np.finfo(np.float32).eps) * float(np.nanmax(np.abs(exact), initial=0.0))
+    return 2.0 * max(float(np.nanmax(np.abs(single - exact), initial=0.0)), rounding)
