@@ -18,20 +18,27 @@ SQUARES = (1e-150, 1e150)
 
 def finite(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite, or a ValueError that names it."""
-    array = np.asarray(value, dtype=np.float64)
+    array = _floats(name, value)
     return _all(name, array, np.isfinite(array), "finite")
 
 
 def nonnegative(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite and >= 0, or a ValueError that names it."""
-    array = np.asarray(value, dtype=np.float64)
+    array = _floats(name, value)
     return _all(name, array, np.isfinite(array) & (array >= 0), "finite and >= 0")
 
 
 def positive(name: str, value: ArrayLike) -> Array:
     """`value` as an array of floats, all finite and > 0, or a ValueError that names it."""
-    array = np.asarray(value, dtype=np.float64)
+    array = _floats(name, value)
     return _all(name, array, np.isfinite(array) & (array > 0), "finite and > 0")
+
+
+def _floats(name: str, value: ArrayLike) -> Array:
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be a number, got {value!r}") from None
 
 
 def positive_deviation(name: str, value: ArrayLike) -> Array:
@@ -55,7 +62,7 @@ def _squarable(array: Array) -> NDArray[np.bool_]:
 
 def within(name: str, value: ArrayLike, good: NDArray[np.bool_], range_: str) -> Array:
     """`value` as an array of floats where `good` holds, or a ValueError that names it."""
-    return _all(name, np.asarray(value, dtype=np.float64), good, range_)
+    return _all(name, _floats(name, value), good, range_)
 
 
 def inside(alpha: Array, beta: Array, gamma: Array) -> NDArray[np.bool_]:

@@ -315,6 +315,10 @@ def test_properties_that_do_not_fit_are_refused(kind, changes, message):
     [
         (lambda: GainScheduledPredictor(**GOOD), "acceleration_noise: .* has none of its own"),
         (lambda: GainScheduledPredictor(**GOOD, acceleration_noise=-1), "acceleration_noise"),
+        (
+            lambda: GainScheduledPredictor(**GOOD, acceleration_noise="a"),
+            "acceleration_noise must be a number, got 'a'",
+        ),
         (lambda: GainScheduledInitiator(**GOOD, velocity_deviation=0), "velocity_deviation"),
         (
             lambda: GainScheduledInitiator(

@@ -27,6 +27,11 @@ from stonesoup_scenes import (
     states,
 )
 
+from fuzzytrack.interop.stonesoup import (
+    GainScheduledInitiator,
+    GainScheduledPredictor,
+    GainScheduledUpdater,
+)
 from fuzzytrack.trackers.catalog import make_tracker
 from fuzzytrack.trackers.covariance import track_covariance
 
@@ -194,3 +199,73 @@ def test_polar_plots_are_positions_with_the_noise_of_their_place(spec, n_axes):
     assert abs(first[0, 1]) > 1.0
     # The second plot is the position, whatever the noise of the first.
     np.testing.assert_allclose(np.asarray(track[1].covar)[places], noises[1], rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        "fixed:alpha=0.5:beta=0.2",
+        "fixed:alpha=0.5:beta=0.2:missed=step",
+        "fixed:alpha=0.5:beta=0.2:gamma=0.05",
+        "fixed:alpha=0.5:beta=0.2:start=one-point",
+    ],
+)
+def test_without_maneuvers_the_covariance_is_that_of_the_plots_noise(spec):
+    """A track with fixed gains is linear in its plots: their noise goes through the responses."""
+    tracker = make_tracker(spec)
+    order = 3 if tracker.uses_acceleration else 2
+    places = mappings(2, tracker.uses_acceleration)
+    model = CartesianToBearingRange(
+        2 * order, places["position_mapping"], np.diag([0.01**2, 5.0**2])
+    )
+    t, z = plots(11, steps=14)
+    z[-1] = 1100.0, 1200.0
+    scans, noises = [], {}
+    for k, (when, place) in enumerate(zip(t, z, strict=True)):
+        detections = set()
+        if not np.isnan(place).any():
+            vector = np.zeros((2 * order, 1))
+            vector[list(places["position_mapping"]), 0] = place
+            seen = model.function(GaussianState(vector, np.eye(2 * order)))
+            detections.add(Detection(seen, timestamp=at(when), measurement_model=model))
+            x, y = place
+            r = np.hypot(x, y)
+            turn = np.array([[x, -y], [y, x]]) / r
+            noises[k] = turn @ np.diag([25.0, (0.01 * r) ** 2]) @ turn.T
+        scans.append((at(when), detections))
+    assert len(noises) < len(t)
+    common = {"tracker": spec, **places}
+    first = {"acceleration_deviation": 0.0} if order == 3 else {}
+    parts = (
+        GainScheduledPredictor(**common, acceleration_noise=0.0),
+        GainScheduledUpdater(**common),
+        GainScheduledInitiator(**common, velocity_deviation=30.0, **first),
+    )
+    track = followed(parts, iter(scans))
+    values = {"position": "filtered", "velocity": "velocity", "acceleration": "acceleration"}
+
+    def last(positions):
+        result = tracker.run(t, positions, SIGMA)
+        found = np.zeros(2 * order)
+        for name, attribute in values.items():
+            if f"{name}_mapping" in places:
+                found[list(places[f"{name}_mapping"])] = getattr(result, attribute)[-1]
+        return found
+
+    def response(row, column):
+        moved = z.copy()
+        moved[row, column] += 1.0
+        return last(moved) - last(z)
+
+    expected = np.zeros((2 * order, 2 * order))
+    for k, noise in noises.items():
+        responses = np.stack([response(k, axis) for axis in range(2)], axis=-1)
+        expected += responses @ noise @ responses.T
+    # And that of the velocity of a new target, which the second plot may remove.
+    for axis, (x, v) in enumerate(zip(*list(places.values())[:2], strict=True)):
+        moved, error = z.copy(), np.zeros(2 * order)
+        moved[:, axis] += t
+        error[[x, v]] = t[-1], 1.0
+        error -= last(moved) - last(z)
+        expected += 30.0**2 * np.outer(error, error)
+    np.testing.assert_allclose(track.covar, expected, rtol=1e-5, atol=1e-6)

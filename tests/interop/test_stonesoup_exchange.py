@@ -90,7 +90,7 @@ def test_truth_and_positions_without_velocity():
 @pytest.mark.parametrize(
     ("given", "error", "message"),
     [
-        (3, TypeError, "tracks: int; expected"),
+        (3, TypeError, "tracks: int; expected a result of a tracker or scan tracker"),
         (
             {"time": [0.0], "id": [1], "position": [[1.0]], "group": ["a"]},
             ValueError,
@@ -193,6 +193,13 @@ def test_a_scan_tracker_runs_on_them():
 @pytest.mark.parametrize(
     ("items", "options", "error", "message"),
     [
+        (3, {}, TypeError, "items: int; expected tracks, true paths or detections"),
+        (
+            Track([State([1.0, 0.0], timestamp=at(0))], id="a"),
+            {},
+            ValueError,
+            r"position_mapping: \(0, 2\) does not fit the state vectors of a, which have 2 places",
+        ),
         ([3], {}, TypeError, "items: int; expected tracks and true paths only"),
         ([(1, 2, 3)], {}, TypeError, "a mixture of detections and pairs"),
         (
@@ -300,8 +307,22 @@ def test_a_gap_in_a_track_is_told():
 
 def test_unknown_families_are_refused():
     tracks, truth = scene(1)
-    with pytest.raises(ValueError, match="families: unknown 'hota'; some of ospa, gospa, siap"):
-        stonesoup_metrics(tracks, truth, families=["hota"])
+    for families in ("hota", ["hota"]):
+        with pytest.raises(ValueError, match="families: unknown 'hota'; some of ospa, gospa, siap"):
+            stonesoup_metrics(tracks, truth, families=families)
+    assert set(stonesoup_metrics(tracks, truth, families="gospa")) == {"gospa"}
+
+
+@pytest.mark.parametrize(("name", "value"), [("cutoff", 0.0), ("order", 0.5), ("match", -1.0)])
+def test_settings_of_metrics_are_checked(name, value):
+    with pytest.raises(ValueError, match=f"{name}: must be"):
+        stonesoup_metrics(*scene(1), **{name: value})
+
+
+def test_without_tracks_every_object_is_missed():
+    _, truth = scene(1)
+    found = stonesoup_metrics(set(), truth, cutoff=10.0)
+    assert (found["ospa"], found["gospa"], found["completeness"]) == (10.0, 20.0, 0.0)
 
 
 def test_velocities_of_stone_soup_are_left_out_too():

@@ -64,7 +64,8 @@ def from_stonesoup(
     TypeError
         If there is anything else among the items.
     ValueError
-        If a detection is no position, or has another number of axes than two.
+        If a mapping does not fit the states, or a detection is no position, or has another number
+        of axes than two.
 
     Examples
     --------
@@ -77,7 +78,10 @@ def from_stonesoup(
     >>> found.time, found.position
     (array([5.]), array([[1., 2.]]))
     """
-    listed = [items] if isinstance(items, StateMutableSequence | Detection) else list(items)
+    listed = [items] if isinstance(items, StateMutableSequence | Detection) else items
+    if not isinstance(listed, Iterable):
+        raise TypeError(f"items: {type(items).__name__}; expected tracks, true paths or detections")
+    listed = list(listed)
     if all(isinstance(each, Detection | tuple) for each in listed) and listed:
         return list(_scans(listed, position_mapping, measurement_model, epoch))
     for each in listed:
@@ -98,7 +102,13 @@ def _positions(
     rows = [(track.id, state) for track in tracks for state in track.last_timestamp_generator()]
     vectors = [np.asarray(state.state_vector, dtype=np.float64).ravel() for _, state in rows]
 
-    def chosen(places: Sequence[int]) -> Array:
+    def chosen(name: str, places: Sequence[int]) -> Array:
+        for (id_, _), vector in zip(rows, vectors, strict=True):
+            if not all(-1 < place < len(vector) for place in places):
+                raise ValueError(
+                    f"{name}: {tuple(places)} does not fit the state vectors of {id_}, which have "
+                    f"{len(vector)} places"
+                )
         found = np.array([vector[list(places)] for vector in vectors])
         return found.reshape(len(rows), len(places))
 
@@ -106,8 +116,8 @@ def _positions(
         "items",
         np.array([_seconds(state.timestamp, epoch) for _, state in rows]),
         np.array([str(name) for name, _ in rows]),
-        chosen(position),
-        None if velocity is None else chosen(velocity),
+        chosen("position_mapping", position),
+        None if velocity is None else chosen("velocity_mapping", velocity),
         coasting=np.array([isinstance(state, Prediction) for _, state in rows], np.bool_),
     )
 
@@ -220,7 +230,13 @@ def as_positions(tracks: Any, name: str) -> Positions:
     """
     if isinstance(tracks, TrackResult):
         return _of_result(tracks)
-    found = Positions.of(tracks, name)
+    try:
+        found = Positions.of(tracks, name)
+    except TypeError:
+        raise TypeError(
+            f"{name}: {type(tracks).__name__}; expected a result of a tracker or scan tracker, "
+            "a mapping of time, id and position, or a tuple (time, id, position)"
+        ) from None
     if found.group is not None:
         raise ValueError(f"{name}: have groups; give those of one recording")
     return found

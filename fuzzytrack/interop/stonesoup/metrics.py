@@ -17,6 +17,7 @@ from stonesoup.metricgenerator.tracktotruthmetrics import SIAPMetrics
 from stonesoup.types.state import StateMutableSequence
 
 from fuzzytrack.interop.stonesoup.exchange import EPOCH, as_positions, from_stonesoup, to_stonesoup
+from fuzzytrack.scoring.metrics import Settings
 from fuzzytrack.scoring.positions import Positions
 
 __all__ = ["FAMILIES", "stonesoup_metrics"]
@@ -39,7 +40,7 @@ def stonesoup_metrics(
     tracks: Any,
     truth: Any,
     *,
-    families: Sequence[str] = FAMILIES,
+    families: str | Sequence[str] = FAMILIES,
     cutoff: float = 20.0,
     order: float = 1.0,
     match: float = 15.0,
@@ -55,8 +56,8 @@ def stonesoup_metrics(
         As for `to_stonesoup`; or tracks of Stone Soup.
     truth : Positions, mapping or tuple, or set of GroundTruthPath
         True positions in the same ways, at the times of the tracks: nothing is interpolated.
-    families : sequence of str
-        Which metrics: some of ``ospa``, ``gospa`` and ``siap``.
+    families : str or sequence of str
+        Which metrics, some of ``ospa``, ``gospa`` and ``siap``.
     cutoff, order : float
         Cut-off c (m) and order p of OSPA and GOSPA.
     match : float
@@ -78,9 +79,9 @@ def stonesoup_metrics(
     Raises
     ------
     TypeError, ValueError
-        As for `to_stonesoup`; if there is no such family, positions have different numbers of axes,
-        or, for SIAP, a track or path lacks a state between its first and its last one, or there is
-        one instant only.
+        As for `to_stonesoup`; if a distance or the order is out of its range, there is no such
+        family, or positions have different numbers of axes; or, for SIAP, if a track or path lacks
+        a state between its first and its last one, or there is one instant only.
 
     Notes
     -----
@@ -89,6 +90,9 @@ def stonesoup_metrics(
     of distances rather than that of their powers. SIAP has other associations there: those of Stone
     Soup begin after three instants in a row.
     """
+    families = (families,) if isinstance(families, str) else families
+    # Their limits are those of the metrics of this package.
+    Settings(cutoff=cutoff, order=order, match=match)
     mappings = {"position_mapping": position_mapping, "velocity_mapping": velocity_mapping}
     sides = [
         _given(each, name, epoch, mappings) for each, name in ((tracks, "tracks"), (truth, "truth"))
