@@ -49,6 +49,11 @@ from fuzzytrack.trackers.catalog import make_tracker
 MODEL = linear((0, 2), 4)
 BEARING = Cartesian2DToBearing(4, (0, 2), np.eye(1))
 SPEC = "track-quality"
+GOOD = {
+    "tracker": "fixed:alpha=0.5:beta=0.2",
+    "position_mapping": (0, 2),
+    "velocity_mapping": (1, 3),
+}
 
 
 def detection(plot, seconds):
@@ -219,7 +224,7 @@ def yaml():
     return made
 
 
-@pytest.mark.parametrize("spec", ["stiffness-damping:method=table", "maneuver:level=5"])
+@pytest.mark.parametrize("spec", ["stiffness-damping:missed=step", "maneuver:level=5"])
 def test_components_go_through_yaml(yaml, spec):
     parts = components(spec)
     given = DistanceHypothesiser(*parts[:2], Mahalanobis(), missed_distance=5)
@@ -236,6 +241,14 @@ def test_components_go_through_yaml(yaml, spec):
                 list(getattr(two, name)) == list(getattr(one, name))
             )
     assert yaml.dumps({"hypothesiser": again, "initiator": found["initiator"]}) == text
+
+
+def test_a_model_within_goes_through_yaml(yaml):
+    given = GainScheduledUpdater(**GOOD, measurement_model=MODEL)
+    found = yaml.load(yaml.dumps(given)).measurement_model
+    assert isinstance(found, LinearGaussian)
+    np.testing.assert_array_equal(found.covar(), MODEL.covar())
+    assert list(found.mapping) == [0, 2]
 
 
 def test_tracks_go_on_from_yaml(yaml):
@@ -268,12 +281,6 @@ def test_wrong_yaml_is_refused_at_its_place(yaml, tag, message):
 
 
 # ------------------------------------------------------------------- what is refused
-
-GOOD = {
-    "tracker": "fixed:alpha=0.5:beta=0.2",
-    "position_mapping": (0, 2),
-    "velocity_mapping": (1, 3),
-}
 
 
 @pytest.mark.parametrize("kind", [GainScheduledPredictor, GainScheduledUpdater])
@@ -415,6 +422,16 @@ def test_detections_that_are_no_positions_are_refused(seen, model, message):
     found = Detection(seen, timestamp=at(0), measurement_model=model)
     with pytest.raises(ValueError, match=message):
         components(SPEC)[2].initiate({found}, at(0))
+
+
+def test_a_track_begins_at_the_time_of_its_detection():
+    """Within a scan detections have times of their own."""
+    predictor, updater, initiator = components("fixed:alpha=0.5:beta=0.2")
+    (track,) = initiator.initiate({detection((0.0, 0.0), 1.0)}, at(3))
+    assert track.timestamp == at(1)
+    prediction = predictor.predict(track, timestamp=at(5))
+    found = updater.update(SingleHypothesis(prediction, detection((20.0, 8.0), 5.0)))
+    np.testing.assert_array_equal(vector(found), [20.0, 5.0, 8.0, 2.0])
 
 
 def test_a_model_may_be_given_to_the_components():

@@ -2,7 +2,21 @@
 
 import numpy as np
 import pytest
-from stonesoup_scenes import SIGMA, components, detected, followed, linear, mappings, plots, states
+from hypothesis import given
+from hypothesis import strategies as st
+from stonesoup.types.detection import Detection
+from stonesoup.types.hypothesis import SingleHypothesis
+from stonesoup_scenes import (
+    SIGMA,
+    at,
+    components,
+    detected,
+    followed,
+    linear,
+    mappings,
+    plots,
+    states,
+)
 
 from fuzzytrack.schedulers import schedulers
 from fuzzytrack.schedulers.catalog import scheduling_rulebases
@@ -30,7 +44,6 @@ VARIANTS = [
     "maneuver:level=5:axes=own",
     "maneuver:level=5:covariance=2",
     "omega-schedule:missed=step",
-    "stiffness-damping:method=table",
     "track-quality:missed=step",
 ]
 EVERY = [*SPECS.values(), *scheduling_rulebases(), *VARIANTS]
@@ -64,3 +77,46 @@ def test_a_single_target(spec, n_axes):
     ):
         if name in places:
             np.testing.assert_allclose(found[:, places[name]], values, rtol=0, atol=1e-9)
+
+
+STEPS = st.lists(
+    st.tuples(st.integers(1, 20_000), st.booleans(), st.integers(-500, 500), st.booleans()),
+    min_size=1,
+    max_size=12,
+)
+
+
+@pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
+@given(steps=STEPS, spec=st.sampled_from(["track-quality", "kalman-cv:sigma_v=1", *VARIANTS[:3]]))
+def test_any_times_and_misses(steps, spec):
+    """Also where a plot comes after a prediction for its time, and where there are two."""
+    tracker = make_tracker(spec)
+    places = mappings(1, tracker.uses_acceleration)
+    model = linear((0,), len(places))
+    predictor, updater, initiator = components(spec, 1)
+
+    def seen(plot, when):
+        return Detection([plot], timestamp=at(when), measurement_model=model)
+
+    (track,) = initiator.initiate({seen(0.0, 0.0)}, at(0.0))
+    times, plots_, milliseconds = [0.0], [0.0], 0
+    for gap, is_seen, plot, twice in steps:
+        milliseconds += gap
+        when = milliseconds / 1000
+        state = predictor.predict(track, timestamp=at(when))
+        if twice:
+            state = predictor.predict(state, timestamp=at(when))
+        if is_seen:
+            state = updater.update(SingleHypothesis(state, seen(plot, when)))
+            if twice:
+                again = predictor.predict(state, timestamp=at(when))
+                state = updater.update(SingleHypothesis(again, seen(-1e6, when)))
+        track.append(state)
+        times.append(when)
+        plots_.append(plot if is_seen else np.nan)
+    expected = tracker.run(times, np.array(plots_)[:, None], SIGMA)
+    scale = np.abs(expected.filtered).max() + np.abs(expected.velocity).max() + 1.0
+    found = states(track)
+    np.testing.assert_allclose(found[:, :1], expected.filtered, rtol=0, atol=1e-9 * scale)
+    np.testing.assert_allclose(found[:, 1:2], expected.velocity, rtol=0, atol=1e-9 * scale)
+    assert (np.linalg.eigvalsh(track.covar) > -1e-9 * np.trace(track.covar)).all()
