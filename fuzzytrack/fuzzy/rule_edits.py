@@ -253,7 +253,7 @@ def _own_consequents(
         raise edits.document.error(
             node,
             f"other rules share the conclusions of the rule for {_spelled(where)}; "
-            "write them out first",
+            "in the text, give it an entry of its own first",
         )
     return node
 

@@ -103,7 +103,9 @@ def test_sensors_and_their_reach_are_shown_and_changed(studio):
     expect(studio.locator(".facts")).not_to_contain_text("8 of 20")
     studio.get_by_role("textbox", name="Reach").fill("nonsense")
     studio.keyboard.press("Enter")
-    expect(studio.get_by_role("textbox", name="Reach")).to_have_attribute("aria-invalid", "true")
+    reach = studio.get_by_role("textbox", name="Reach")
+    expect(reach).to_have_attribute("aria-invalid", "true")
+    assert reach.evaluate("field => field.validationMessage").startswith("Type a number")
     studio.keyboard.press("Escape")
     expect(studio.get_by_role("textbox", name="Reach")).to_have_value("1000")
 
@@ -207,12 +209,15 @@ def drop(page, name, text):
         }""",
         [name, text],
     )
-    page.dispatch_event("#pane-data .drop", "drop", {"dataTransfer": transfer})
+    page.dispatch_event("#main", "drop", {"dataTransfer": transfer})
 
 
 def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv):
-    view(studio, "Data")
+    drop(studio, "mine.yaml", "rulebase: 1")
+    expect(studio.locator("#status")).to_contain_text("mine.yaml is no CSV file")
+    # Dropped anywhere, in any view.
     drop(studio, "mine.csv", csv)
+    expect(studio.locator("#pane-data")).to_be_visible()
     # Two tracks without the column that tells them apart: the page says so, and takes the name.
     expect(studio.get_by_role("alert")).to_contain_text("mine.csv: row 112")
     studio.get_by_label("Track column").select_option("id")
@@ -232,3 +237,8 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv
     expect(studio.locator("#pane-rules")).to_be_visible()
     studio.keyboard.press("Control+z")
     expect(studio.locator("#bar")).to_contain_text("as shipped")
+    # The trackers name what is open now.
+    studio.get_by_role("button", name="Open", exact=True).click()
+    studio.get_by_role("dialog").get_by_text("omega-schedule").click()
+    view(studio, "Run")
+    expect(studio.locator("#pane-run")).to_contain_text("editor: omega-schedule")

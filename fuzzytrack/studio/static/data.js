@@ -26,6 +26,8 @@ const HELP = {
   whiteness: "Correlation of successive innovations; 0 for a filter that fits the target",
 };
 
+const MARKS =
+  "Best: the least error of prediction. Worse: worse than the plots themselves; the plot before predicts better";
 // Decimal places of columns whose values are of one size.
 const PLACES = { change: 1, outside: 1, log_likelihood: 2, whiteness: 3 };
 
@@ -82,7 +84,8 @@ export function mount(element, app) {
       html("div", { class: "side" }, recording.element, group("Trackers", picks.element)),
     ),
   );
-  for (const kind of ["dragover", "dragleave", "drop"]) element.addEventListener(kind, recording.dragged);
+  // Anywhere on the page: the browser would leave it for a file that is dropped beside the field.
+  for (const kind of ["dragover", "dragleave", "drop"]) document.addEventListener(kind, recording.dragged);
 
   function keepers() {
     const { tracked, recording: name } = store.now;
@@ -246,7 +249,7 @@ function comparisonTable({ comparison }, hidden, toggle) {
               "div",
               {},
               lineButton(row.name, index, hidden.includes(row.name), toggle),
-              row.mark ? html("span", { class: "mark" }, row.mark) : null,
+              row.mark ? html("span", { class: "mark", title: MARKS }, row.mark) : null,
             ),
           ),
           ...columns.map(([key]) => cellOf(row, key)),

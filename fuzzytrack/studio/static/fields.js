@@ -22,6 +22,8 @@ export function numberField(
     title,
   });
   let current = null;
+  const limit = Number.isFinite(least) ? ` of at least ${least}` : "";
+  const expected = `a ${whole ? "whole " : ""}number${limit}${empty ? ", or nothing" : ""}`;
 
   function leave() {
     if (input.value === written(current)) return;
@@ -29,7 +31,11 @@ export function numberField(
     const value = none ? null : typed(input.value);
     const wrong = !none && (!Number.isFinite(value) || value < least || (whole && !Number.isInteger(value)));
     input.setAttribute("aria-invalid", String(wrong));
-    if (wrong) return;
+    if (wrong) {
+      input.setCustomValidity(`Type ${expected}, or press Esc.`);
+      input.reportValidity();
+      return;
+    }
     current = value;
     change(value);
   }
@@ -40,10 +46,12 @@ export function numberField(
     if (document.activeElement !== input || input.value === "") input.value = written(current);
   }
 
+  input.addEventListener("input", () => input.setCustomValidity(""));
   input.addEventListener("change", leave);
   input.addEventListener("keydown", (event) => {
     if (event.key === "Escape") {
       input.value = written(current);
+      input.setCustomValidity("");
       input.removeAttribute("aria-invalid");
     }
     if (event.key !== "Enter") return;

@@ -130,7 +130,9 @@ store.follow(["job"], ({ job }) => {
 });
 
 store.follow(["state", "scenario"], ({ state, scenario }) => {
-  if (state && scenario) store.set({ opened: { rules: state.name, scenario: scenario.name } });
+  const { rules, scenario: world } = store.now.opened;
+  if (!state || !scenario || (rules === state.name && world === scenario.name)) return;
+  store.set({ opened: { rules: state.name, scenario: scenario.name } });
 });
 
 store.follow(["connected", "hello"], ({ connected, hello }) => {
@@ -139,7 +141,7 @@ store.follow(["connected", "hello"], ({ connected, hello }) => {
 });
 
 // What went wrong is over with the next change that is made.
-store.follow(["state"], () => message.classList.contains("error") && say(""));
+store.follow(["state", "view"], () => message.classList.contains("error") && say(""));
 
 // ---------------------------------------------------------------------- looks
 

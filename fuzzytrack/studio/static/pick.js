@@ -160,7 +160,7 @@ export function trackerList({ store }) {
     );
   }
 
-  store.follow(["trackers", "hello", "scenario"], ({ trackers, hello }) => {
+  store.follow(["trackers", "hello", "scenario", "opened"], ({ trackers, hello }) => {
     if (!hello) return;
     const inside = rows.contains(document.activeElement);
     const place = inside

@@ -33,7 +33,7 @@ export function recordingForm(app, taken) {
   const chosen = select("File", [], "", choose);
   const input = html("input", {
     type: "file",
-    accept: ".csv,.txt,text/csv",
+    accept: ".csv,text/csv",
     class: "unseen",
     tabindex: -1,
     "aria-label": "CSV file",
@@ -162,6 +162,11 @@ export function recordingForm(app, taken) {
   async function take(file) {
     input.value = "";
     if (!file) return;
+    if (!/\.csv$/i.test(file.name)) {
+      say(`${file.name} is no CSV file. Put rule bases and scenarios into the folder, and open them.`, "error");
+      return;
+    }
+    store.set({ view: "data" });
     const text = await file.text();
     const most = store.now.hello.limits.message - OVERHEAD;
     if (JSON.stringify(text).length > most) {
@@ -220,7 +225,8 @@ export function recordingForm(app, taken) {
     const kind = POSITIONS[reading.position];
     kind.places.forEach((name, k) => {
       const usual = reading.position === "axes" ? byName(found?.places[k]) : "choose";
-      offer(places[k], k === 2 && !found?.places[2] ? "none" : usual, reading.places[k]);
+      const none = k === 2 || (k === 1 && found?.places.length === 1);
+      offer(places[k], none && !found?.places[k] ? "none" : usual, reading.places[k]);
       placeFields[k].firstChild.textContent = name;
       places[k].setAttribute("aria-label", name);
     });
@@ -234,6 +240,7 @@ export function recordingForm(app, taken) {
       show(reading.noise[known[0]] ?? null);
     });
     azimuth.hidden = reading.position !== "polar";
+    position.parentElement.classList.toggle("wide", azimuth.hidden);
     truth.show(reading.truth);
     for (const [key, list] of Object.entries(choices)) list.value = reading[key];
     gap.show(reading.max_gap);

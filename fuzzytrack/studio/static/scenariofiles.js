@@ -26,9 +26,14 @@ export function openScenario({ store, scenario, say }) {
       ...(own.length ? [{ heading: "In the folder" }] : []),
       ...own.map(({ name }) => ({ text: name, run: () => open(name) })),
       { heading: "Shipped" },
-      ...hello.scenarios.map(({ name }) => ({ text: name, run: () => open(name) })),
+      ...hello.scenarios.map(({ name, source }) => ({ text: name, note: noteOf(source), run: () => open(name) })),
     ];
   });
+}
+
+/** Where a scenario is from, without its remarks; empty if it is ours. */
+function noteOf(source) {
+  return source === "fuzzytrack" ? "" : source.split(/[;,] (?=the |what |whose |where )/)[0];
 }
 
 /** A menu to keep the scenario. */
