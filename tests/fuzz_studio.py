@@ -266,7 +266,7 @@ def check(found: str | bytes, seq: int, sent: str | bytes, folder: Path) -> str:
     assert len(said) <= LETTERS, f"a refusal of {len(said)} letters"
     assert "Traceback" not in said, "a traceback"
     assert "\n" not in said, "several lines"
-    assert str(folder) not in said, "the name of the folder"
+    assert str(folder) not in said, f"the name of the folder: {said[:300]}"
     named = re.match("([a-z_]+): ", said)
     assert not named or named[1] in names_in(sent), f"no argument of the message: {said[:80]}"
     return "refused"

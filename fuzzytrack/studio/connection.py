@@ -133,18 +133,18 @@ class Connection:
         except MessageError as failure:
             await self._outbox.put(error(failure.seq, failure))
             return
+        named = self._studio.folder.without_path
         try:
             found = await self._do(request)
         except ValueError as failure:
-            await self._outbox.put(error(request.seq, failure))
+            found = error(request.seq, failure, named)
         except OSError as failure:
-            await self._outbox.put(error(request.seq, failure.strerror or str(failure)))
+            found = error(request.seq, failure.strerror or str(failure), named)
         except Exception as failure:
             # A plug-in may raise anything, and a mistake of ours must not take the page down.
             said = f"{request.command}: {in_one_sentence(failure)}"
-            await self._outbox.put(error(request.seq, said))
-        else:
-            await self._outbox.put(found)
+            found = error(request.seq, said, named)
+        await self._outbox.put(found)
 
     async def _do(self, request: Request) -> str | bytes:
         async with self._order:

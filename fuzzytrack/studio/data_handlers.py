@@ -8,7 +8,7 @@ from typing import Any
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.specs import is_file, split
-from fuzzytrack.studio.arguments import Arguments
+from fuzzytrack.studio.arguments import Arguments, renamed
 from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MESSAGE_BYTES
@@ -81,7 +81,8 @@ def tune(page: Page, given: Arguments) -> Later:
     if text is None:
         page.session.check_loads("scenario")
     else:
-        data = _recorded(page, text, given)
+        with renamed(name="on"):
+            data = _recorded(page, text, given)
     free = given.text("free", None)
     tuning = Tuning(
         data,

@@ -96,6 +96,10 @@ class Folder:
             )
         return sorted(found, key=lambda file: file.name.casefold())
 
+    def without_path(self, text: str) -> str:
+        """A message with the names of files of the folder in place of their paths."""
+        return text.replace(f"{self.path}{os.sep}", "")
+
     def place(self, name: str) -> Path:
         """Path of a file of the folder, which need not exist.
 

@@ -10,6 +10,7 @@ from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from itertools import count
 from typing import Any
 
+from fuzzytrack.errors import in_one_sentence
 from fuzzytrack.studio.limits import SILENCE
 from fuzzytrack.studio.notes import noted
 from fuzzytrack.workers import end_processes, process_pool
@@ -138,9 +139,15 @@ class Jobs:
 
     Processes stay for the next job, since a new one takes a second to begin. A job that is canceled
     or stuck takes its processes with it.
+
+    Parameters
+    ----------
+    named : callable, optional
+        Puts names of files in the place of paths, in messages.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, named: Callable[[str], str] = str) -> None:
+        self._named = named
         self._numbers = count(1)
         self._pool: ProcessPoolExecutor | None = None
         self._current: Job | None = None
@@ -213,10 +220,10 @@ class Jobs:
                 self._drop()
             job.end("failed", "a process ended, perhaps for lack of memory; try fewer runs")
         except ValueError as failure:
-            job.end("failed", str(failure))
+            job.end("failed", self._named(str(failure)))
         except Exception as failure:
             # What a plug-in raises is no mistake of the server.
-            job.end("failed", f"{type(failure).__name__}: {failure}")
+            job.end("failed", self._named(in_one_sentence(failure)))
 
 
 def _processes() -> int:

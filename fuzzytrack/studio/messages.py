@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -112,12 +112,20 @@ def answer(seq: int, result: Mapping[str, Any]) -> str:
 _LONG = re.compile(r"(\S{60})\S{60,}(\S{20})")
 
 
-def error(seq: int | None, failure: BaseException | str) -> str:
-    """Answer to a request that cannot be done: a sentence, and the place if it is in a text."""
+def error(seq: int | None, failure: BaseException | str, named: Callable[[str], str] = str) -> str:
+    """Answer to a request that cannot be done: a sentence, and the place if it is in a text.
+
+    Parameters
+    ----------
+    seq : int or None
+    failure : exception or str
+    named : callable, optional
+        Puts names of files in the place of paths.
+    """
     where = getattr(failure, "location", None)
     # The file of a text in the editor has no name that helps.
     said = failure.message if isinstance(failure, FileError) else str(failure)
-    said = _LONG.sub(r"\1…\2", said)
+    said = _LONG.sub(r"\1…\2", named(said))
     place = {"line": where.line, "column": where.column} if where else None
     return _text({"seq": seq, "error": said, "where": place})
 

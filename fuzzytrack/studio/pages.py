@@ -142,7 +142,7 @@ class Studio:
     def __init__(self, folder: Folder, command: CommandLine | None = None) -> None:
         self.folder = folder
         self.command = command
-        self.jobs = Jobs()
+        self.jobs = Jobs(folder.without_path)
         self.uploads = Uploads(self.folder)
         self._pages: dict[str, Page] = {}
         self._lock = threading.Lock()

@@ -90,7 +90,7 @@ def walk_run(page: Page, given: Arguments) -> Later:
             times, true, _, plots = simulated_runs(scenario, seed, range(number, number + 1))
         sigma = np.broadcast_to(plots.sigma, plots.z.shape)
         time = times if times.ndim == 1 else times[:, 0]
-        with noted() as notes:
+        with noted() as notes, renamed(z=None):
             found = walk(tracker, time, plots.z[:, 0], sigma[:, 0], true[:, 0])
         return {**found, "notes": by_name(notes, trackers)}
 
