@@ -27,7 +27,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from fuzzytrack.fuzzy.loading import rulebase_path
-from fuzzytrack.studio import connection
+from fuzzytrack.studio import connection, limits
 from fuzzytrack.studio.access import PROTOCOL, Access
 from fuzzytrack.studio.app import make_app
 from fuzzytrack.studio.command_table import HANDLERS
@@ -37,8 +37,9 @@ from fuzzytrack.studio.notes import warnings_to_notes
 from fuzzytrack.studio.pages import Studio
 
 TOKEN, HOST = "a-token-of-the-tests", "127.0.0.1:8098"
-# Messages of a page; seconds that an answer may take; letters of a refusal.
-CHUNK, SECONDS, LETTERS = 250, 30.0, 2000
+# Messages of a page; seconds that an answer may take, which are more than after which the server
+# answers that it has given up; letters of a refusal.
+CHUNK, SECONDS, LETTERS = 250, limits.SECONDS + 30.0, 2000
 # MiB that may be added after so many pages: by then what is kept for trackers and rule bases that
 # come again is as large as it may be, and matplotlib has been imported.
 MEBIBYTES, WARM_UP = 30, 160
@@ -252,7 +253,7 @@ class Socket:
 
 
 def check(found: str | bytes, seq: int, sent: str | bytes, folder: Path) -> str:
-    """What an answer is: done, a surface or refused; raises if it is anything else."""
+    """What an answer is: done, a surface, refused or given up; raises if it is anything else."""
     if isinstance(found, bytes):
         assert int.from_bytes(found[:4], "little") == seq, "a surface of another message"
         return "surfaces"
@@ -269,7 +270,7 @@ def check(found: str | bytes, seq: int, sent: str | bytes, folder: Path) -> str:
     assert str(folder) not in said, f"the name of the folder: {said[:300]}"
     named = re.match("([a-z_]+): ", said)
     assert not named or named[1] in names_in(sent), f"no argument of the message: {said[:80]}"
-    return "refused"
+    return "given up" if said.endswith("and was given up") else "refused"
 
 
 def names_in(sent: str | bytes) -> tuple[str, ...]:
