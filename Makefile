@@ -9,6 +9,7 @@ LOWEST_TESTS ?= tests/test_public_names.py tests/cli/test_app.py tests/cli/test_
 	tests/cli/test_rulebase_commands.py tests/io tests/plotting/test_plotting.py \
 	tests/plotting/test_surfaces.py tests/fuzzy/test_loading.py tests/fuzzy/test_system.py \
 	tests/fuzzy/test_membership.py tests/kernels tests/trackers/test_speed_paths.py \
+	tests/studio/test_access.py tests/studio/test_studio_server.py \
 	--deselect tests/kernels/test_shared_code.py::test_results_are_those_of_plain_python_to_the_bit
 FUZZ_COUNT ?= 1000000
 FUZZ_FILES ?= 100000
@@ -70,7 +71,7 @@ $(LOWEST)/.installed: pyproject.toml .ci/lowest.py
 	$(PYTHON) -m venv $(LOWEST)
 	$(PYTHON) .ci/lowest.py > $(LOWEST)/constraints.txt
 	$(LOWEST)/bin/python -m pip -qq --disable-pip-version-check --no-input install $(PIP_ARGS) \
-		--constraint $(LOWEST)/constraints.txt --editable '.[parquet,zst,geo,asterix,ais]' pytest hypothesis jsonschema
+		--constraint $(LOWEST)/constraints.txt --editable '.[parquet,zst,geo,asterix,ais,studio]' pytest hypothesis jsonschema
 	@touch $@
 
 # The oldest packages use what the newest ones warn of; that is not for us to mend.

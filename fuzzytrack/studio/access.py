@@ -100,9 +100,11 @@ class Access:
         """
         if not self.knows(headers) or headers.get("origin") != f"http://{headers.get('host')}":
             return False
-        given = [name.removeprefix(_TOKEN) for name in protocols if name.startswith(_TOKEN)]
+        # Old versions of uvicorn give those of one header as one text.
+        offered = [name.strip() for each in protocols for name in each.split(",")]
+        given = [name.removeprefix(_TOKEN) for name in offered if name.startswith(_TOKEN)]
         right = [secrets.compare_digest(each.encode(), self.token.encode()) for each in given]
-        return PROTOCOL in protocols and any(right)
+        return PROTOCOL in offered and any(right)
 
 
 def _split(host: str) -> tuple[str, int]:

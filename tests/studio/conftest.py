@@ -1,6 +1,8 @@
 import contextlib
+import inspect
 import json
 import re
+import socket
 import struct
 import subprocess
 import sys
@@ -76,13 +78,15 @@ class Address:
 
         address = f"ws://{host or self.host}/socket"
         if host is not None:
-            options["address"] = "127.0.0.1", self.port
+            options["sock"] = socket.create_connection(("127.0.0.1", self.port), timeout=30)
+        if "proxy" in inspect.signature(connect).parameters:
+            # Before version 15 of websockets none is used.
+            options["proxy"] = None
         return connect(
             address,
             origin=origin or f"http://{self.host}",
             subprotocols=["fuzzytrack", f"token.{self.token if token is None else token}"],
             compression=None,
-            proxy=None,
             max_size=None,
             **options,
         )

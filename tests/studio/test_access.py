@@ -17,6 +17,7 @@ def headers(host="127.0.0.1:8098", origin="http://127.0.0.1:8098"):
 def test_a_page_of_this_server_gets_a_socket(host):
     assert ACCESS.knows({"host": host})
     assert ACCESS.admits(headers(host, f"http://{host}"), OFFERED)
+    assert ACCESS.admits(headers(host, f"http://{host}"), [", ".join(OFFERED)])
 
 
 @pytest.mark.parametrize(
