@@ -6,8 +6,6 @@ given. It needs what `benchmarks.studio` needs.
 
 from __future__ import annotations
 
-import math
-import random
 import re
 import sys
 from pathlib import Path
@@ -18,6 +16,8 @@ import numpy as np
 from PIL import Image
 
 from benchmarks.studio import browsing, serving
+from fuzzytrack.io.formats import write_table
+from fuzzytrack.simulation.samples import make_sample
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 SIZE = {"width": 1280, "height": 800}
@@ -69,19 +69,6 @@ def fewer(picture: Image.Image) -> Image.Image:
     found = Image.fromarray(indices, "P")
     found.putpalette(chosen.astype(np.uint8).tobytes())
     return found
-
-
-def recording() -> str:
-    """Three targets that fly straight and turn, with noise of 30 m on each axis."""
-    draw = random.Random(7)
-    lines = ["time,track,x,y"]
-    for number, (x, y, course) in enumerate([(0.0, 0.0, 0.4), (9e3, 1e3, 2.2), (2e3, 8e3, -0.9)]):
-        for k in range(120):
-            course += 0.05 if 40 <= k < 70 else -0.03 if k >= 95 else 0.0
-            x, y = x + 120 * math.cos(course), y + 120 * math.sin(course)
-            plot = f"{x + draw.gauss(0, 30):.1f},{y + draw.gauss(0, 30):.1f}"
-            lines.append(f"{2 * k},{'ABC'[number]},{plot}")
-    return "\n".join(lines) + "\n"
 
 
 # -------------------------------------------------------------------- views
@@ -138,14 +125,18 @@ def walk(page: Any) -> None:
 
 
 def data(page: Any) -> None:
-    """A recording whose tracks have a column of another name."""
+    """The file of a radar, read as the page proposes, with trackers for recordings."""
     open_view(page, "Data")
-    files = {"name": "radar.csv", "mimeType": "text/csv", "buffer": recording().encode()}
-    page.locator("#pane-data input[type=file]").set_input_files(files)
-    page.get_by_role("alert").filter(has_text="radar.csv").wait_for()
-    page.get_by_label("Track column").select_option("track")
-    rows = page.locator("#pane-data .result-table tbody tr")
-    rows.first.wait_for(timeout=120_000)
+    choose = page.locator("#pane-data").get_by_role("button", name="Choose", exact=True)
+    choose.click()
+    page.get_by_role("menuitem", name="Those for recordings").click()
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "radar.csv"
+        write_table(str(path), make_sample("radar", 0).plots)
+        page.locator("#pane-data input[type=file]").set_input_files(path)
+        page.get_by_role("button", name="Use range, azimuth").click()
+    page.get_by_role("button", name="Use track as").click(timeout=120_000)
+    page.locator("#pane-data .what").filter(has_text="6 tracks").wait_for(timeout=120_000)
 
 
 VIEWS = {
