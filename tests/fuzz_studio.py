@@ -23,6 +23,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
+from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -42,9 +43,9 @@ TOKEN, HOST = "a-token-of-the-tests", "127.0.0.1:8098"
 CHUNK, SECONDS, LETTERS = 250, limits.SECONDS + 30.0, 2000
 # MiB that may be added after so many pages: by then what is kept for trackers and rule bases that
 # come again is as large as it may be, and matplotlib has been imported.
-MEBIBYTES, WARM_UP = 30, 160
-# Pages after which memory is printed.
-PAGES = 40
+MEBIBYTES, WARM_UP = 30, 240
+# Pages after which memory is printed, and of how many: one may have a large job that goes on.
+PAGES, MEDIAN = 40, 20
 
 # -------------------------------------------------------------------- messages
 
@@ -207,8 +208,7 @@ class Report:
     outcomes: Counter[str] = field(default_factory=Counter)
     slowest: float = 0.0
     slowest_message: str = ""
-    begun: float = 0.0
-    peak: float = 0.0
+    sizes: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
 
 
@@ -345,20 +345,20 @@ def run(seed: int, count: int, folder: Path, chunk: int = CHUNK) -> Report:
     try:
         for page in range(-(-count // chunk)):
             asyncio.run(talk(app, seed, page, min(chunk, count - page * chunk), folder, report))
-            if page + 1 == WARM_UP:
-                report.begun = resident()
+            report.sizes.append(resident())
             if (page + 1) % PAGES == 0:
-                print(f"{(page + 1) * chunk} messages: {resident():.0f} MiB", flush=True)
+                sent, size = (page + 1) * chunk, median(report.sizes[-MEDIAN:])
+                print(f"{sent} messages: {size:.0f} MiB", flush=True)
             if len(report.failures) > 20:
                 break
-        report.peak = resident()
     finally:
         stack.close()
         connection.in_one_sentence = was
         logging.getLogger().removeHandler(log)
         studio.close()
-    if report.begun and report.peak - report.begun > MEBIBYTES:
-        report.failures.append(f"memory: from {report.begun:.0f} to {report.peak:.0f} MiB")
+    warm, last = report.sizes[:WARM_UP][-MEDIAN:], report.sizes[WARM_UP:][-MEDIAN:]
+    if last and median(last) - median(warm) > MEBIBYTES:
+        report.failures.append(f"memory: from {median(warm):.0f} to {median(last):.0f} MiB")
     return report
 
 
@@ -382,8 +382,8 @@ def main() -> int:
     kinds = ", ".join(f"{count} {kind}" for kind, count in report.outcomes.items())
     print(
         f"{report.messages} messages: {kinds}; slowest answer {report.slowest:.1f} s "
-        f"({report.slowest_message}); memory {report.begun:.0f} MiB after {CHUNK * WARM_UP} "
-        f"messages, {report.peak:.0f} at the end"
+        f"({report.slowest_message}); memory {median(report.sizes[-MEDIAN:]):.0f} MiB at the end, "
+        f"{max(report.sizes):.0f} at most"
     )
     for failure in report.failures:
         print(f"FAILED {failure}")

@@ -102,10 +102,7 @@ def _tune(page: Page, given: Arguments) -> Snippet:
 
 def report(page: Page, given: Arguments) -> Later:
     """The last run as one HTML page, with its pictures."""
-    run = page.run
-    if run is None or run.results is None:
-        raise ValueError("there are no results yet; run an experiment to its end first")
-    results = run.results
+    results = page.results
 
     def work() -> Answer:
         from fuzzytrack.reports.html_report import write_report

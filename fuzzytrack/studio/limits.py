@@ -4,14 +4,14 @@ from __future__ import annotations
 
 __all__ = [
     "LIMITS", "MESSAGE_BYTES", "MOST_PLOTS", "MOST_POINTS", "MOST_RUNS", "MOST_SESSIONS",
-    "RESULT_BYTES", "SECONDS", "SILENCE", "WAITING", "check_runs_fit",
+    "RESULT_BYTES", "SECONDS", "SILENCE", "WAITING", "check_runs_fit", "run_bytes",
 ]  # fmt: skip
 
 #: Bytes of one message from the page; a longer one ends the connection.
 MESSAGE_BYTES = 2**20
 #: Monte Carlo runs of one job.
 MOST_RUNS = 100_000
-#: Bytes of the errors that one job keeps.
+#: Bytes of the errors that are kept, of the last jobs of all pages.
 RESULT_BYTES = 2**30
 #: Plots of one file.
 MOST_PLOTS = 1_000_000
@@ -36,21 +36,28 @@ LIMITS = {
 }
 
 
+def run_bytes(scans: int, n_axes: int, trackers: int) -> int:
+    """Bytes of the errors that are kept of one Monte Carlo run.
+
+    The notes of `fuzzytrack.testbed.montecarlo.monte_carlo` say what they are.
+    """
+    return 8 * scans * (n_axes * (1 + 3 * trackers) + 2 * trackers)
+
+
 def check_runs_fit(runs: int, scans: int, n_axes: int, trackers: int) -> None:
     """Refuse a job whose errors would take more than `RESULT_BYTES`.
 
     Parameters
     ----------
     runs, scans, n_axes, trackers : int
-        Size of the job; each run keeps what the notes of
-        `fuzzytrack.testbed.montecarlo.monte_carlo` say.
+        Size of the job.
 
     Raises
     ------
     ValueError
         Names the number of runs that fits.
     """
-    each = 8 * scans * (n_axes * (1 + 3 * trackers) + 2 * trackers)
+    each = run_bytes(scans, n_axes, trackers)
     fit = RESULT_BYTES // each
     if runs > fit:
         raise ValueError(

@@ -11,12 +11,13 @@ from typing import Any, Protocol
 
 from fuzzytrack.studio.folder import Folder
 from fuzzytrack.studio.jobs import Job, Jobs
-from fuzzytrack.studio.limits import MOST_SESSIONS
+from fuzzytrack.studio.limits import MOST_SESSIONS, RESULT_BYTES
 from fuzzytrack.studio.messages import event
 from fuzzytrack.studio.run_jobs import Run
 from fuzzytrack.studio.session import Session
 from fuzzytrack.studio.tracker_texts import listed_trackers
 from fuzzytrack.studio.uploads import Uploads
+from fuzzytrack.testbed.results import Results
 
 __all__ = ["CommandLine", "Line", "Page", "Studio"]
 
@@ -122,6 +123,22 @@ class Page:
         with contextlib.suppress(OSError, ValueError):  # the folder may be gone, or be full
             self.session.autosave()
 
+    @property
+    def results(self) -> Results:
+        """Results of the last Monte Carlo experiment.
+
+        Raises
+        ------
+        ValueError
+            If there are none, or they are no longer kept.
+        """
+        if self.run is None or self.run.results is None:
+            why = "there are no results yet; run an experiment to its end first"
+            if self.run_job is not None and self.run_job.state == "done":
+                why = "the results were dropped for large ones of another page; run it again"
+            raise ValueError(why)
+        return self.run.results
+
     def report(self, job: Job, with_results: bool) -> None:
         """Tell the page of a job."""
         if self._connection is not None:
@@ -201,6 +218,18 @@ class Studio:
         if not closed:
             raise ValueError(f"{MOST_SESSIONS} pages are open; close one, and load this one again")
         del self._pages[min(closed, key=lambda page: page.used).key]
+
+    def make_room_for(self, run: Run, asking: Page) -> None:
+        """Forget results of other pages where all together are too large, of closed ones first."""
+        with self._lock:
+            pages = [page for page in self._pages.values() if page is not asking]
+        kept = [(page.connected, page.used, page.run) for page in pages]
+        total = run.size
+        for _, _, each in sorted(kept, key=lambda found: found[:2], reverse=True):
+            if each is not None and each.results is not None:
+                total += each.size
+                if total > RESULT_BYTES:
+                    each.results = None
 
     def close(self) -> None:
         """End the job that runs, keep drafts of what has changed, and drop recordings."""

@@ -40,6 +40,7 @@ def run(page: Page, given: Arguments) -> Later:
     def work() -> Answer:
         started = Run(scenario, make(), runs, seed)
         started.check()
+        page.studio.make_room_for(started, page)
         page.job = page.studio.jobs.start("run", runs, run_work(started), page.report)
         page.run, page.run_job = started, page.job
         return {"job": page.job.number}
@@ -100,10 +101,7 @@ def walk_run(page: Page, given: Arguments) -> Later:
 def paired(page: Page, given: Arguments) -> Later:
     """Difference of two trackers of the last experiment, run by run, and over time."""
     first, second = given.text("first"), given.text("second")
-    run = page.run
-    if run is None or run.results is None:
-        raise ValueError("first: there are no results yet; run an experiment to its end first")
-    results = run.results
+    results = page.results
     return Later(lambda: paired_as_json(results, first, second))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.studio.jobs import Job, Work
-from fuzzytrack.studio.limits import check_runs_fit
+from fuzzytrack.studio.limits import check_runs_fit, run_bytes
 from fuzzytrack.studio.notes import by_name
 from fuzzytrack.studio.run_results import operations, results_as_json
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -41,6 +41,13 @@ class Run:
     runs: int
     seed: int
     results: Results | None = None
+
+    @property
+    def size(self) -> int:
+        """Bytes of its errors."""
+        scenario = self.scenario
+        each = run_bytes(len(scenario.time), scenario.n_axes, len(self.trackers))
+        return self.runs * each
 
     def check(self) -> None:
         """Refuse what needs too much memory.

@@ -100,3 +100,19 @@ def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page):
 )
 def test_what_cannot_be_run_is_refused(page, arguments, message):
     assert message in page.refused("run", **{"trackers": ["editor"], **arguments})
+
+
+def test_large_results_of_another_page_are_dropped_for_new_ones(tmp_path, new_server, monkeypatch):
+    server = new_server(tmp_path)
+    monkeypatch.setattr("fuzzytrack.studio.jobs._processes", lambda: 1)
+    with server.page() as page, server.page() as other:
+        run_and_wait(page, trackers=["editor"], runs=5)
+        run_and_wait(other, trackers=["editor"], runs=5)
+        assert page.ask("report")["text"]
+        kept = 2 * server.studio().open(page.hello["session"]).run.size
+        monkeypatch.setattr("fuzzytrack.studio.pages.RESULT_BYTES", kept - 1)
+        run_and_wait(other, trackers=["editor"], runs=5)
+        said = "the results were dropped for large ones of another page; run it again"
+        assert page.refused("report") == said
+        assert page.refused("paired", first="editor", second="editor") == said
+        assert other.ask("report")["text"]
