@@ -126,7 +126,11 @@ FITTING: dict[str, Callable[[random.Random], Any]] = {
     "tracker": one_of(*TRACKERS), "first": one_of(*TRACKERS), "second": one_of(*TRACKERS),
     "runs": one_of(1, 3, 10**9), "run": one_of(0, 1, 5), "seed": one_of(0, 1, 2**31),
     "job": COUNT, "time": one_of("time", "none"), "id": one_of("id", "none"),
-    "axes": one_of(["x", "y"], ["x"], ["z"]), "truth": one_of(["x", "y"], None),
+    "axes": one_of(["x", "y"], ["x"], ["z"]), "truth": one_of(["x", "y"], ["../x.csv"], ["/"], None),
+    "polar": one_of(None, None, ["x", "y"], ["x"]), "geodetic": one_of(None, None, ["x", "y"]),
+    "sigma_range": one_of(None, 3, "x"), "duplicates": one_of(None, "first", "x"),
+    "site": one_of(None, [52.5, 5], [1]), "sort": one_of(True, False, 1),
+    "key": one_of("a1", "", "../x", 3),
     "on": one_of("flight.csv", None), "free": one_of("outputs", "sets", "none"),
     "trials": one_of(1, 2), "folds": one_of(2, 3),
     "if": one_of({"service": "poor"}, {"E": "ze", "dE": "ze"}), "of": one_of("run", "track"),
@@ -138,7 +142,8 @@ FITTING: dict[str, Callable[[random.Random], Any]] = {
 NO_NUMBERS: tuple[Any, ...] = (None, True, -1, 0.5, 10**30, "1", [1], {}, float("nan"))
 OPTIONAL = (
     "at", "inputs", "against", "rows", "columns", "shared", "like", "with_rules", "overwrite",
-    "time", "id", "axes", "sigma", "truth", "symmetric", "draft", "steps", "missed", "period",
+    "time", "id", "axes", "sigma", "truth", "polar", "geodetic", "sigma_range", "duplicates",
+    "site", "sort", "symmetric", "draft", "steps", "missed", "period",
 )  # fmt: skip
 # What takes long is asked for less often; what mends a broken text, more often.
 WEIGHT = {

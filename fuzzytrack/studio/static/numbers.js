@@ -1,7 +1,7 @@
 /* Numbers as they are shown and typed, and ticks of axes. */
 
 // From here on a number has an exponent, or its zeros would take the room of the picture.
-const [TINY, HUGE] = [1e-6, 1e7];
+const [TINY, HUGE] = [1e-4, 1e7];
 
 /** A number with at most so many significant digits and a true minus sign. */
 export function shown(value, digits = 4) {

@@ -511,7 +511,7 @@ function drawCurve(pen, width, height, values, point) {
   const [low, high] = rangeOf(values);
   const margin = 0.05 * (high - low);
   const box = curveBox(width, height);
-  const label = signOf(values.output);
+  const label = nameOf(values);
   const axis = axisOf(values.axes[0]);
   const place = drawAxes(pen, box, axis, { low: low - margin, high: high + margin, label, name: label });
   const line = [];
