@@ -16,18 +16,19 @@ __all__ = ["BOUNDS", "NEEDS", "TYPES", "arithmetic"]
 TYPES = {"double": "double", "float": "float"}
 
 #: Largest relative errors of functions that are not rounded correctly, in units of 2^-52 for
-#: double and 2^-23 for float: over 10 million random arguments each, tests measure fewer.
+#: double and 2^-23 for float: of 10 million arguments none had more, see `tests/fuzz_c99.py`.
+#: Results below the normal numbers are within one step of those that there are.
 BOUNDS = {
-    ("exp", "double"): 1.0, ("exp", "float"): 1.0,
-    ("log", "double"): 1.0, ("log", "float"): 1.0,
-    ("pow", "double"): 2.0, ("pow", "float"): 1.0,
+    ("exp", "double"): 0.7, ("exp", "float"): 0.7,
+    ("log", "double"): 0.6, ("log", "float"): 0.6,
+    ("pow", "double"): 1.3, ("pow", "float"): 1.3,
 }  # fmt: skip
 
 #: Functions that a function calls.
 NEEDS = {
     "pow": ("exp", "log_parts", "two_to"), "exp": ("two_to",), "log": ("log_parts",),
-    "floor_divide": ("modulo",), "floor": ("whole",), "ceil": ("whole",),
-    "floor_divide_whole": (), "modulo_whole": ("floor_divide_whole",),
+    "floor_divide": ("remainder",), "modulo": ("remainder",), "floor": ("whole",),
+    "ceil": ("whole",),
 }  # fmt: skip
 
 _SHARED = {
@@ -110,7 +111,8 @@ INLINE int64_t NAME_floor_divide_whole(int64_t a, int64_t b)
 /* Python's % of integers, for a divisor other than 0. */
 INLINE int64_t NAME_modulo_whole(int64_t a, int64_t b)
 {
-    return b == -1 ? 0 : a - NAME_floor_divide_whole(a, b) * b;
+    const int64_t rest = b == -1 ? 0 : a % b;
+    return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
 }
 """,
     "place": """
@@ -139,19 +141,19 @@ INLINE int64_t NAME_whole(TYPE x)
 INLINE int64_t NAME_floor(TYPE x)
 {
     const int64_t toward_0 = NAME_whole(x);
-    return (TYPE)toward_0 > x ? toward_0 - 1 : toward_0;
+    return toward_0 > INT64_MIN && (TYPE)toward_0 > x ? toward_0 - 1 : toward_0;
 }
 """,
     "ceil": """
 INLINE int64_t NAME_ceil(TYPE x)
 {
     const int64_t toward_0 = NAME_whole(x);
-    return (TYPE)toward_0 < x ? toward_0 + 1 : toward_0;
+    return toward_0 < INT64_MAX && (TYPE)toward_0 < x ? toward_0 + 1 : toward_0;
 }
 """,
-    "modulo": """
-/* Python's % of numbers, with the sign of the divisor; exact before that is given to it. */
-INLINE TYPE NAME_modulo(TYPE x, TYPE y)
+    "remainder": """
+/* What is left of x after it is divided by y, with the sign of x; exact. */
+INLINE TYPE NAME_remainder(TYPE x, TYPE y)
 {
     const TYPE size = y < ZERO ? -y : y;
     TYPE rest = x < ZERO ? -x : x;
@@ -168,29 +170,44 @@ INLINE TYPE NAME_modulo(TYPE x, TYPE y)
         rest = rest >= part ? rest - part : rest;
         part = part * HALF;
     }
+    return x < ZERO ? -rest : rest;
+}
+""",
+    "modulo": """
+/* Python's % of numbers: it has the sign of the divisor. */
+INLINE TYPE NAME_modulo(TYPE x, TYPE y)
+{
+    const TYPE rest = NAME_remainder(x, y);
     if (rest == ZERO) {
         return y < ZERO ? -ZERO : ZERO;
     }
-    rest = x < ZERO ? -rest : rest;
-    return (x < ZERO) == (y < ZERO) ? rest : rest + y;
+    return (rest < ZERO) == (y < ZERO) ? rest : rest + y;
 }
 """,
     "floor_divide": """
 /* Python's // of numbers. */
 INLINE TYPE NAME_floor_divide(TYPE x, TYPE y)
 {
-    const TYPE quotient = (x - NAME_modulo(x, y)) / y;
-    TYPE floor;
+    const TYPE rest = NAME_remainder(x, y);
+    TYPE quotient = (x - rest) / y;
+    TYPE below;
     if (y == ZERO) {
         return x / y;
+    }
+    if (rest != ZERO && (rest < ZERO) != (y < ZERO)) {
+        quotient = quotient - ONE;
+    }
+    if (quotient == ZERO) {
+        /* With the sign of the exact quotient. */
+        return x / y * ZERO;
     }
     /* Whole already, if it is so large, or not finite. */
     if (!(quotient < LARGE && quotient > -LARGE)) {
         return quotient;
     }
-    floor = (TYPE)(int64_t)quotient;
-    floor = floor > quotient ? floor - ONE : floor;
-    return quotient - floor > HALF ? floor + ONE : floor;
+    below = (TYPE)(int64_t)quotient;
+    below = below > quotient ? below - ONE : below;
+    return quotient - below > HALF ? below + ONE : below;
 }
 """,
     "log": """
@@ -387,7 +404,7 @@ INLINE double NAME_pow(double x, double y)
             result = result < (double)INFINITY ? result + result * rest : result;
         }
     }
-    return x < 0.0 && whole && !even ? -result : result;
+    return (x < 0.0 || (x == 0.0 && 1.0 / x < 0.0)) && whole && !even ? -result : result;
 }
 """,
 }
@@ -551,7 +568,7 @@ INLINE float NAME_pow(float x, float y)
             result = result < INFINITY ? result + result * low : result;
         }
     }
-    return x < 0.0f && whole && !even ? -result : result;
+    return (x < 0.0f || (x == 0.0f && 1.0f / x < 0.0f)) && whole && !even ? -result : result;
 }
 """,
 }

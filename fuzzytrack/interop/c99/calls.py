@@ -221,13 +221,7 @@ class CallWriter(ExpressionWriter):
     def _sum_of(self, node: ast.Call, x: Value) -> Value:
         total: Value = Known(0)
         for item in self.row(node, x).items:
-            total = (
-                item
-                if isinstance(total, Known)
-                and total.value == 0
-                and (isinstance(item, Scalar) and item.kind == NUMBER)
-                else self.binary(node, ast.Add(), total, item)
-            )
+            total = self.binary(node, ast.Add(), total, item)
         return total
 
     def _tuple_of(self, node: ast.Call, x: Value) -> Value:

@@ -320,8 +320,11 @@ class ExpressionWriter:
         if isinstance(left, Known) and isinstance(right, Known):
             try:
                 return Known(compute(left.value, right.value))
-            except (ArithmeticError, TypeError) as error:
+            except TypeError as error:
                 return self.refuse(node, f"cannot compute {sign} of constants: {error}")
+            except ArithmeticError:
+                # C goes on with infinity or NaN.
+                left = Known(float(left.value))
         sequences = [v for v in (left, right) if isinstance(v, Row) or _known_tuple(v)]
         if sequences:
             return self._tuple_operation(node, sign, left, right)
@@ -490,6 +493,9 @@ class ExpressionWriter:
             first, second = self.number(node, left), self.number(node, right)
         elif first.kind != second.kind:
             first, second = self.whole(node, first), self.whole(node, second)
+        if first.kind != NUMBER and first.text == second.text:
+            # Compilers warn of it. A number is compared with itself to find NaN.
+            return Known(bool(compute(0, 0)))
         self.cost("comparisons")
         return Scalar(f"{inside(first, SUM)} {sign} {inside(second, SUM)}", TRUTH, rank)
 
