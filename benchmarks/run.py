@@ -10,6 +10,7 @@ from typing import Any
 from benchmarks import (
     batch,
     engines,
+    exported,
     growth,
     kalman,
     machine,
@@ -33,6 +34,7 @@ JOBS: tuple[Job, ...] = (
     (batch.SECTION, "two threads", batch.threads),
     (batch.SECTION, "given gains", batch.numpy_gains),
     (batch.SECTION, "plug-in scheduler", batch.plugin),
+    (batch.SECTION, "exported C99", exported.c99),
     (profile.SECTION, "where the time goes", profile.where),
     (maneuver.SECTION, "maneuver, by hand", maneuver.loop),
     (maneuver.SECTION, "maneuver, imm-three", maneuver.imm),

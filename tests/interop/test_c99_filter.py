@@ -9,6 +9,7 @@ from test_conformance import SCHEDULERS, TRACKERS
 import fuzzytrack as ft
 from fuzzytrack.interop.c99.build import CompilerError, find_compiler
 from fuzzytrack.interop.c99.compiled_filter import compiled_c
+from fuzzytrack.interop.c99.compiled_lanes import FAST, CompiledLanes
 
 try:
     find_compiler()
@@ -152,3 +153,20 @@ def test_wrong_shapes_are_refused(maneuver):
         compiled_c("maneuver", axes=0)
     assert "tracker" in repr(maneuver)
     assert "filtered" in repr(maneuver.run([0.0], [[1.0, 2.0]], 1.0))
+
+
+@pytest.mark.parametrize(
+    "tracker",
+    [
+        ft.AlphaBetaTracker("stiffness-damping"),
+        ft.AlphaBetaTracker("maneuver", missed="step"),
+        TRACKERS["imm-two"],
+    ],
+    ids=lambda tracker: tracker.name,
+)
+def test_lanes_side_by_side_give_the_same_bits(tracker):
+    given = [plots(2, 40, True, seed) for seed in range(300)]
+    t = given[0][0]
+    z, sigma = (np.stack([g[k] for g in given], axis=1) for k in (1, 2))
+    lanes = CompiledLanes(tracker, axes=2, flags=("-O1", *FAST[2:]))
+    np.testing.assert_array_equal(lanes(t, z, sigma), tracker.run(t, z, sigma).predicted)
