@@ -45,7 +45,7 @@ def numbers(depth, names=("a", "b", "c", "m[0]", "m[-1]", "x", "y")):
         st.builds("(-{})".format, n),
         st.builds("({} if {} else {})".format, n, t, n),
         st.builds("{}({}, {})".format, st.sampled_from(["min", "max"]), n, n),
-        st.builds("min({}, {}, {})".format, n, w, n),
+        st.builds("min({}, {}, {})".format, n, n, n),
         st.builds("abs({})".format, n),
         st.builds("math.fabs({})".format, n),
         st.builds("math.sqrt(abs({}))".format, n),
