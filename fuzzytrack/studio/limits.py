@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 __all__ = [
-    "LIMITS", "MESSAGE_BYTES", "MOST_PLOTS", "MOST_POINTS", "MOST_RUNS", "MOST_SESSIONS",
-    "RESULT_BYTES", "SECONDS", "SILENCE", "WAITING", "check_runs_fit", "run_bytes",
+    "LIMITS", "MESSAGE_BYTES", "MOST_PLOTS", "MOST_POINTS", "MOST_RUNS", "MOST_SCANS",
+    "MOST_SESSIONS", "RESULT_BYTES", "SECONDS", "SILENCE", "WAITING", "check_runs_fit", "run_bytes",
 ]  # fmt: skip
 
 #: Bytes of one message from the page; a longer one ends the connection.
@@ -15,6 +15,8 @@ MOST_RUNS = 100_000
 RESULT_BYTES = 2**30
 #: Plots of one file.
 MOST_PLOTS = 1_000_000
+#: Scans of a scenario; files may have more, which would fill the memory of a few pages.
+MOST_SCANS = 100_000
 #: Points of a surface on each axis.
 MOST_POINTS = 201
 #: Pages that are open at a time, or can be reloaded.

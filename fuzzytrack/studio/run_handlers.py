@@ -18,7 +18,7 @@ from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.run_jobs import Run, run_work
 from fuzzytrack.studio.run_results import paired_as_json
 from fuzzytrack.studio.tracker_texts import EDITOR, make_trackers
-from fuzzytrack.studio.walk import walk
+from fuzzytrack.studio.walk import MOST_STEPS, walk
 from fuzzytrack.testbed.montecarlo import simulated_runs
 from fuzzytrack.trackers.base import Tracker
 
@@ -83,6 +83,8 @@ def walk_run(page: Page, given: Arguments) -> Later:
     number = given.whole("run", 0, MOST_RUNS - 1, 0)
     page.session.check_loads("scenario")
     scenario = page.session.reading.scenario
+    if len(scenario.time) > MOST_STEPS:
+        raise ValueError(f"run: has {len(scenario.time)} scans; at most {MOST_STEPS} can be walked")
 
     def work() -> Answer:
         with renamed(trackers="tracker", truth=None):

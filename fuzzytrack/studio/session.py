@@ -33,6 +33,7 @@ from fuzzytrack.studio.commands import OF_ANY_TEXT, edited, is_number
 from fuzzytrack.studio.complaints import Complaint, complaint_of, complaints_of_rules
 from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.history import History, OpenText, Texts
+from fuzzytrack.studio.limits import MOST_SCANS
 from fuzzytrack.studio.surfaces import Surfaces, surfaces
 from fuzzytrack.yamltree import MAX_BYTES, Document, Node, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode
@@ -421,7 +422,12 @@ class Session:
     def _scenario_of(self, name: str, text: str) -> Scenario:
         file = self._file(name)
         self._check_files(Document(text, file, failure=ScenarioError))
-        return loads_scenario(text, file)
+        found = loads_scenario(text, file)
+        if len(found.time) > MOST_SCANS:
+            raise ScenarioError(
+                f"{len(found.time)} scans; at most {MOST_SCANS} here: make the period longer"
+            )
+        return found
 
     def _check_files(self, document: Document) -> None:
         """Check that a scenario names no files but those of the folder."""

@@ -40,15 +40,17 @@ class Threads:
         loop = asyncio.get_running_loop()
         future: asyncio.Future[T] = loop.create_future()
 
-        def work() -> None:
+        def work(future: asyncio.Future[T]) -> None:
             try:
                 found = function()
             except BaseException as failure:
                 _tell(loop, _fail, future, failure)
             else:
                 _tell(loop, _give, future, found)
+            finally:
+                del future
 
-        threading.Thread(target=work, daemon=True).start()
+        threading.Thread(target=work, args=(future,), daemon=True).start()
         try:
             async with asyncio.timeout(SECONDS):
                 return await asyncio.shield(future)
@@ -58,6 +60,10 @@ class Threads:
             self._stuck += 1
             future.add_done_callback(self._ended)
             raise ValueError(f"this took longer than {SECONDS:g} s, and was given up") from None
+        finally:
+            # An error refers to the frames that it has passed, and their future to the error: all
+            # would stay, with the arrays of the work, until garbage is collected.
+            del future
 
     def _ended(self, future: asyncio.Future[T]) -> None:
         self._stuck -= 1

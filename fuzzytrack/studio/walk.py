@@ -14,7 +14,7 @@ from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["MOST_STEPS", "walk"]
 
-#: Scans of a run that is walked.
+#: Scans of a run that can be walked, which takes long and makes a long answer.
 MOST_STEPS = 5_000
 # Rules of a plot, the strongest.
 _RULES = 4
@@ -44,8 +44,6 @@ def walk(
         single one where all axes share their gains, each None or with ``values`` by name and the
         strongest ``rules`` (``index`` from 0, ``text``, ``strength``).
     """
-    if len(times) > MOST_STEPS:
-        raise ValueError(f"run: has {len(times)} scans; at most {MOST_STEPS} can be walked")
     result = tracker.run(times, z, sigma)
     gains = result.gains
     return {

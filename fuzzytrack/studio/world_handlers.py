@@ -9,6 +9,7 @@ from fuzzytrack.simulation.sampling import PATTERNS
 from fuzzytrack.specs import is_file
 from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.studio.handlers import Handler
+from fuzzytrack.studio.limits import MOST_SCANS
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.scenario_text import (
     Entry,
@@ -29,7 +30,7 @@ _MOTIONS = (
 )  # fmt: skip
 _OF_MOTION = ("speed", "acceleration", "radius", "heading", "period")
 _OF_SENSORS = ("reach", "range_sigma", "bearing_sigma", "sigma", "detection")
-_MOST_SENSORS, _MOST_SCANS, _MOST_POINTS = 100, 100_000, 1_000
+_MOST_SENSORS, _MOST_POINTS = 100, 1_000
 _SPACINGS = ("dense", "medium", "sparse")
 
 
@@ -123,7 +124,7 @@ def set_motion(page: Page, given: Arguments) -> Answer:
     if "start" in given:
         entries["start"] = given.numbers("start")
     if "steps" in given:
-        entries["steps"] = float(given.whole("steps", 3, _MOST_SCANS))
+        entries["steps"] = float(given.whole("steps", 3, MOST_SCANS))
     return _put(page, with_target(page.session.texts.scenario.text, entries))
 
 

@@ -1,8 +1,12 @@
 """Work in threads that does not come to an end."""
 
 import asyncio
+import contextlib
+import gc
 import threading
+import weakref
 
+import numpy as np
 import pytest
 
 from fuzzytrack.studio import threads
@@ -43,3 +47,24 @@ def test_what_is_raised_arrives():
 
     with pytest.raises(KeyError, match="x"):
         asyncio.run(Threads().run(wrong))
+
+
+def test_what_was_at_work_when_an_error_was_raised_is_freed_at_once():
+    kept = []
+
+    def wrong():
+        large = np.zeros(1000)
+        kept.append(weakref.ref(large))
+        raise ValueError("too large")
+
+    async def work():
+        # `pytest.raises` would keep the error.
+        with contextlib.suppress(ValueError):
+            await Threads().run(wrong)
+
+    gc.disable()
+    try:
+        asyncio.run(work())
+        assert kept[0]() is None
+    finally:
+        gc.enable()

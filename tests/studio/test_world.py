@@ -109,3 +109,16 @@ def test_a_scenario_is_saved(server, page):
     assert page.ask("save_scenario", name="world")["state"]["file"] == "world.yaml"
     assert "sigma: 77" in (server.folder / "world.yaml").read_text()
     (server.folder / "world.yaml").unlink()
+
+
+def test_a_scenario_of_too_many_scans_is_refused_and_one_of_many_is_not_walked(page):
+    page.ask("open_scenario", name="turn")
+    found = page.ask("set_sampling", kind="alternate", value=[0.5, 2], period=0.1)["state"]
+    scans = found["scenario"]["scans"]
+    assert scans > 5000
+    said = page.refused("walk", tracker="editor")
+    assert said == f"run: has {scans} scans; at most 5000 can be walked"
+    refusal = page.refused("set_sampling", kind="alternate", value=[0.5, 2], period=0.001)
+    assert refusal.endswith("scans; at most 100000 here: make the period longer")
+    assert page.ask("scenario")["state"]["scenario"]["scans"] == scans
+    page.ask("undo")
