@@ -125,6 +125,16 @@ def test_trackers_run_and_the_table_has_the_numbers_of_the_testbed(studio):
     studio.get_by_role("button", name="Side by side").click()
     expect(studio.locator(".difference")).to_contain_text("paired over 20 runs")
 
+    about = studio.locator("#pane-results header")
+    expect(about).to_contain_text("turn, 20 runs, seed 3")
+    view(studio, "World")
+    studio.get_by_role("textbox", name="Plot σ").first.fill("90")
+    studio.keyboard.press("Enter")
+    view(studio, "Run")
+    expect(about).to_contain_text("seed 3; scenario changed since")
+    studio.keyboard.press("Control+z")
+    expect(about).not_to_contain_text("changed since")
+
     # One run, scan by scan.
     studio.get_by_role("button", name="One run").click()
     slider = studio.get_by_role("slider", name="Scan")

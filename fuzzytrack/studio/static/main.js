@@ -14,7 +14,7 @@ const INITIAL = {
   // From the server.
   connected: false, session: null, opened: { rules: null, scenario: null }, hello: null, state: null, files: [], shipped: [], values: null,
   valuesError: null, explanation: null, gains: null, visits: null, runs: 0,
-  scenario: null, job: null, results: null, asked: null, tracked: null, tuned: null, uploads: [],
+  scenario: null, job: null, results: null, asked: null, ranWith: null, tracked: null, tuned: null, uploads: [],
   // What is looked at.
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
@@ -30,7 +30,7 @@ const INITIAL = {
 const KEPT = [
   "session", "opened", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "axes", "point", "camera",
   "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
-  "asked", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
+  "asked", "ranWith", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
   "trackers", "wantedRuns", "seed", "readings", "uploads", "tuneOn", "tuning",
 ];
 const SCHEME = "fuzzytrack scheme";

@@ -82,8 +82,22 @@ export function mount(element, app) {
     for (const [key, part] of Object.entries(parts)) {
       part.hidden = key !== resultsTab || (!results && key !== "walk");
     }
-    about.textContent = results ? `${results.scenario}, ${results.runs} runs, seed ${results.seed}` : "";
   });
+  store.follow(["results", "ranWith", "state", "scenario"], (now) => {
+    about.textContent = now.results ? aboutOf(now) : "";
+  });
+}
+
+/** What the results are of, and what has been changed since. */
+function aboutOf({ results, ranWith, state, scenario, job }) {
+  const name = `${results.scenario}${ranWith?.changed ? " (changed)" : ""}`;
+  const about = `${name}, ${results.runs} runs, seed ${results.seed}`;
+  if (!ranWith || !state || !scenario || job?.state === "running") return about;
+  const since = [
+    ...(state.text === ranWith.rules ? [] : ["rules"]),
+    ...(scenario.text === ranWith.scenario ? [] : ["scenario"]),
+  ];
+  return since.length ? `${about}; ${since.join(" and ")} changed since` : about;
 }
 
 function mountAll(element, app) {

@@ -41,7 +41,7 @@ export function mount(element, app) {
   });
 
   async function run() {
-    const { wantedRuns, seed: wanted, job } = store.now;
+    const { wantedRuns, seed: wanted, job, state, scenario } = store.now;
     if (job?.state === "running") return;
     const texts = chosenTrackers(store.now);
     if (!texts.length) {
@@ -52,7 +52,10 @@ export function mount(element, app) {
     words.textContent = "Starting…";
     try {
       await socket.send("run", { trackers: texts, runs: wantedRuns, seed: wanted });
-      store.set({ asked: { trackers: texts, runs: wantedRuns, seed: wanted } });
+      store.set({
+        asked: { trackers: texts, runs: wantedRuns, seed: wanted },
+        ranWith: { rules: state.text, scenario: scenario.text, changed: !scenario.saved },
+      });
     } catch (error) {
       words.textContent = "";
       say(error.message, "error");
