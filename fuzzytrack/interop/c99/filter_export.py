@@ -13,7 +13,7 @@ from fuzzytrack.interop.c99.c_program import CProgram, operations_in_words
 from fuzzytrack.interop.c99.c_text import literal
 from fuzzytrack.interop.c99.filter import FilterTranslation, translated_filter
 from fuzzytrack.interop.c99.number_types import NumberType
-from fuzzytrack.interop.c99.selftest import Check, constant_rows
+from fuzzytrack.interop.c99.selftest import Check, check_lines, constant_rows
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
@@ -106,40 +106,38 @@ class FilterExport:
         # An expected value is rounded, too.
         wanted = self.expected.astype(self.number.dtype)
         compared = [
-            f"            wrong += is_wrong(track.{word}[k], right[row][{place}], {bound});"
+            f"        wrong += is_wrong(track.{word}[k], right[row][{place}], {bound});"
             for word, place, bound in (
                 ("position", "k", position),
                 ("velocity", f"k + {axes}U", velocity),
             )
         ]
-        lines = [
+        data = [
             "/* Times, plots and standard deviations of a track. */",
             *constant_rows("double", "times", self.times[:, None]),
             *constant_rows(c_type, "plots", self.plots),
             *constant_rows(c_type, "sigmas", self.sigmas),
-            "",
             "/* Positions, then velocities. */",
             *constant_rows(c_type, "right", wanted),
-            "",
-            "static unsigned int filter_check(void)",
-            "{",
-            f"    {name}_state track;",
-            "    unsigned int wrong = 0U;",
-            "    unsigned int row;",
-            "    unsigned int k;",
-            f"    {name}_init(&track);",
-            f"    for (row = 0U; row < {len(self.times)}U; row++) {{",
-            f"        if ({name}_step(&track, times[row][0], plots[row], sigmas[row]) != 0) {{",
-            "            wrong += 1U;",
-            "        }",
-            f"        for (k = 0U; k < {axes}U; k++) {{",
-            *compared,
-            "        }",
-            "    }",
-            "    return wrong;",
-            "}",
         ]
-        return Check("filter_check", tuple(lines), wanted.size)
+        body = [
+            f"{name}_state track;",
+            "unsigned int wrong = 0U;",
+            "unsigned int row;",
+            "unsigned int k;",
+            "",
+            f"{name}_init(&track);",
+            f"for (row = 0U; row < {len(self.times)}U; row++) {{",
+            f"    if ({name}_step(&track, times[row][0], plots[row], sigmas[row]) != 0) {{",
+            "        wrong += 1U;",
+            "    }",
+            f"    for (k = 0U; k < {axes}U; k++) {{",
+            *compared,
+            "    }",
+            "}",
+            "return wrong;",
+        ]
+        return Check("filter_check", wanted.size, check_lines("filter_check", data, body))
 
 
 def filter_export(

@@ -16,7 +16,7 @@ from fuzzytrack.interop.c99.signature import Signature
 from fuzzytrack.interop.c99.vectors import Vectors
 from fuzzytrack.reprs import summary
 
-__all__ = ["Check", "constant_rows", "infer_check", "selftest_text"]
+__all__ = ["Check", "check_lines", "constant_rows", "infer_check", "selftest_text"]
 
 #: Parts of a step in which expected integers are written.
 _PARTS = 256
@@ -30,15 +30,15 @@ class Check:
     ----------
     function : str
         Its name; it takes nothing and returns an ``unsigned int``.
-    lines : tuple of str
-        Its definition, and its data.
     values : int
         How many values it compares.
+    lines : list of str
+        Its definition.
     """
 
     function: str
-    lines: tuple[str, ...]
     values: int
+    lines: list[str]
 
     def __repr__(self) -> str:
         return summary(self, "function", "values")
@@ -97,32 +97,35 @@ def infer_check(names: Signature, number: NumberType, checked: Vectors, bound: E
     expected, bounds = _written(number, checked.expected, bound.bounds)
     wide = _wide(number)
     arguments = ", ".join(f"given[row][{k}]" for k in range(n_inputs))
-    lines = [
+    data = [
         f"/* {', '.join(names.inputs)} */",
         *constant_rows(number.c_type, "given", checked.inputs),
-        "",
         f"/* {', '.join(names.outputs)} */",
         *constant_rows(wide, "expected", expected),
-        "",
         f"static const {wide} bound[{n_outputs}] = {{ {', '.join(map(literal, bounds))} }};",
-        "",
-        "static unsigned int infer_check(void)",
-        "{",
-        "    unsigned int wrong = 0U;",
-        "    unsigned int row;",
-        "    unsigned int k;",
-        f"    for (row = 0U; row < {count}U; row++) {{",
-        f"        const {names.structure} y = {names.function}({arguments});",
-        f"        {number.c_type} found[{n_outputs}];",
-        *(f"        found[{k}] = y.{member};" for k, member in enumerate(names.outputs)),
-        f"        for (k = 0U; k < {n_outputs}U; k++) {{",
-        "            wrong += is_wrong(found[k], expected[row][k], bound[k]);",
-        "        }",
-        "    }",
-        "    return wrong;",
-        "}",
     ]
-    return Check("infer_check", tuple(lines), count * n_outputs)
+    body = [
+        "unsigned int wrong = 0U;",
+        "unsigned int row;",
+        "unsigned int k;",
+        "",
+        f"for (row = 0U; row < {count}U; row++) {{",
+        f"    const {names.structure} y = {names.function}({arguments});",
+        f"    {number.c_type} found[{n_outputs}];",
+        *(f"    found[{k}] = y.{member};" for k, member in enumerate(names.outputs)),
+        f"    for (k = 0U; k < {n_outputs}U; k++) {{",
+        "        wrong += is_wrong(found[k], expected[row][k], bound[k]);",
+        "    }",
+        "}",
+        "return wrong;",
+    ]
+    return Check("infer_check", count * n_outputs, check_lines("infer_check", data, body))
+
+
+def check_lines(function: str, data: list[str], body: list[str]) -> list[str]:
+    """Definition of a function that counts wrong values: its data, and what it does."""
+    inside = [f"    {line}" if line else "" for line in (*data, *body)]
+    return [f"static unsigned int {function}(void)", "{", *inside, "}"]
 
 
 def _wide(number: NumberType) -> str:
@@ -155,9 +158,8 @@ def _is_wrong(number: NumberType) -> list[str]:
         head,
         "{",
         f"    const {wide} apart = found - wanted;",
-        "    const int near = (apart <= most) && (apart >= -most);",
-        "    const int both = (wanted != wanted) && (found != found);",
-        "    return ((near != 0) || (both != 0)) ? 0U : 1U;",
+        "    return (((apart <= most) && (apart >= -most)) ||",
+        "            ((wanted != wanted) && (found != found))) ? 0U : 1U;",
         "}",
     ]
 
