@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make arm", description=__doc__)
     parser.add_argument("names", nargs="*", default=list(shipped_rulebases()), help="rule bases")
     parser.add_argument("--random", type=int, default=1_000_000, help="inputs for the error")
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="write the table")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="write the table in Markdown")
     given = parser.parse_args(arguments)
     for program in ("arm-none-eabi-gcc", BOARD[0]):
         if shutil.which(program) is None:
@@ -60,8 +60,14 @@ def main(arguments: list[str] | None = None) -> int:
     text = "\n".join(line.rstrip() for line in table_lines(list(COLUMNS), rows, 120, 3)) + "\n"
     print(text, end="")
     if given.output:
-        given.output.write_text(text, encoding="utf-8")
+        given.output.write_text(markdown(rows), encoding="utf-8")
     return 1 if wrong else 0
+
+
+def markdown(rows: list[list[str]]) -> str:
+    """The table for a page of the documentation, without what the self-tests say."""
+    lines = [COLUMNS[:-1], ("---",) * 3 + ("--:",) * 4, *(row[:-1] for row in rows)]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def selftest(made: CExport, folder: Path) -> tuple[bool, str]:
