@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make arm", description=__doc__)
     parser.add_argument("names", nargs="*", default=list(shipped_rulebases()), help="rule bases")
     parser.add_argument("--random", type=int, default=1_000_000, help="inputs for the error")
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="write the table in Markdown")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="write it as Markdown")
     given = parser.parse_args(arguments)
     for program in ("arm-none-eabi-gcc", BOARD[0]):
         if shutil.which(program) is None:
