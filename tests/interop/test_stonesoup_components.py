@@ -35,6 +35,7 @@ from stonesoup.types.hypothesis import SingleHypothesis
 from stonesoup.types.state import GaussianState
 from stonesoup.types.track import Track
 from stonesoup.types.update import Update
+from stonesoup.updater.kalman import KalmanUpdater
 from stonesoup_scenes import SIGMA, at, components, detected, followed, linear, plots, states
 
 from fuzzytrack.interop.stonesoup import (
@@ -377,6 +378,21 @@ def test_states_without_a_memory_are_refused():
     for state in (plain, foreign):
         with pytest.raises(ValueError, match="is not from GainScheduledPredictor"):
             updater.update(SingleHypothesis(state, detection((0.0, 0.0), 1.0)))
+
+
+@pytest.mark.parametrize("twice", [False, True])
+def test_states_that_another_component_has_changed_are_refused(twice):
+    """They have the memory of the state before."""
+    parts = components(SPEC)
+    state = updated(parts, started(parts), (10.0, 4.0), 1.0)
+    when = 1.0 if twice else 2.0
+    prediction = parts[0].predict(state, timestamp=at(when))
+    changed = KalmanUpdater().update(SingleHypothesis(prediction, detection((30.0, 9.0), when)))
+    motion = CombinedLinearGaussianTransitionModel([ConstantVelocity(1), ConstantVelocity(1)])
+    for foreign in (changed, KalmanPredictor(motion).predict(state, timestamp=at(2))):
+        assert foreign.memory is not None
+        with pytest.raises(ValueError, match="is not that of its memory; predict and update it"):
+            parts[0].predict(foreign, timestamp=at(3))
 
 
 def test_states_of_another_tracker_are_refused():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Any
 
+import numpy as np
 from stonesoup.base import Property
 from stonesoup.predictor._utils import predict_lru_cache
 from stonesoup.predictor.base import Predictor
@@ -76,8 +77,8 @@ class GainScheduledPredictor(GainScheduledComponent, Predictor):
         Raises
         ------
         ValueError
-            If the state has no memory, or that of another tracker, or the time is missing or
-            earlier.
+            If the state has no memory, or that of another tracker, or was changed by another
+            component, or the time is missing or earlier.
         """
         recursion, memory = self._recursion, self._memory_of(prior)
         if timestamp is None or timestamp < prior.timestamp:
@@ -110,4 +111,9 @@ class GainScheduledPredictor(GainScheduledComponent, Predictor):
                 "mixture tracker (PDA, JPDA), which replaces states by others without a memory"
             )
         self._recursion.check(memory)
+        if not np.array_equal(self._recursion.vector(memory), prior.state_vector):
+            raise ValueError(
+                f"prior: the state vector of a {type(prior).__name__} is not that of its memory; "
+                "predict and update it with GainScheduledPredictor and GainScheduledUpdater only"
+            )
         return memory
