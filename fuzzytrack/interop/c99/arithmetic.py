@@ -21,6 +21,7 @@ TYPES = {"double": "double", "float": "float"}
 BOUNDS = {
     ("exp", "double"): 0.7, ("exp", "float"): 0.7,
     ("log", "double"): 0.6, ("log", "float"): 0.6,
+    ("cos", "double"): 0.8, ("cos", "float"): 0.6,
     ("pow", "double"): 1.3, ("pow", "float"): 1.3,
 }  # fmt: skip
 
@@ -28,7 +29,7 @@ BOUNDS = {
 NEEDS = {
     "pow": ("exp", "log_parts", "two_to"), "exp": ("two_to",), "log": ("log_parts",),
     "floor_divide": ("remainder",), "modulo": ("remainder",), "floor": ("whole",),
-    "ceil": ("whole",),
+    "ceil": ("whole",), "cos": ("circular",), "sin": ("circular",),
 }  # fmt: skip
 
 _SHARED = {
@@ -210,6 +211,18 @@ INLINE TYPE NAME_floor_divide(TYPE x, TYPE y)
     return quotient - below > HALF ? below + ONE : below;
 }
 """,
+    "cos": """
+INLINE TYPE NAME_cos(TYPE x)
+{
+    return NAME_circular(x, 0);
+}
+""",
+    "sin": """
+INLINE TYPE NAME_sin(TYPE x)
+{
+    return NAME_circular(x, 3);
+}
+""",
     "log": """
 /* Natural logarithm. */
 INLINE TYPE NAME_log(TYPE x)
@@ -229,6 +242,47 @@ INLINE TYPE NAME_log(TYPE x)
 }
 
 _DOUBLE = {
+    "circular": """
+/* Cosine of an angle up to 1.6e6, or with quarters = 3 its sine; beyond, NaN. */
+INLINE double NAME_circular(double x, int32_t quarters)
+{
+    int32_t k;
+    double n;
+    double r;
+    double low;
+    double y;
+    double s;
+    double value;
+    if (!(x < 1.6e6 && x > -1.6e6)) {
+        return (double)NAN;
+    }
+    k = (int32_t)(x * 0.6366197723675814 + (x < 0.0 ? -0.5 : 0.5));
+    n = (double)k;
+    /* A quarter of a turn in three parts; products with the first two are exact. */
+    r = x - n * 1.5707963267341256;
+    y = r - n * 6.077100506303966e-11;
+    low = ((r - y) - n * 6.077100506303966e-11) - n * 2.0222662487959506e-21;
+    r = y + low;
+    low = (y - r) + low;
+    s = r * r;
+    k = (k + quarters) % 4;
+    k = k < 0 ? k + 4 : k;
+    if (k == 1 || k == 3) {
+        value = r + (low - r * s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0 - s
+            * (1.0 / 362880.0 - s * (1.0 / 39916800.0 - s * (1.0 / 6227020800.0 - s *
+            (1.0 / 1307674368000.0 - s * (1.0 / 355687428096000.0 - s * (1.0 /
+            121645100408832000.0))))))))));
+    } else {
+        /* What rounding takes from 1 - s/2 is given to the rest. */
+        y = 1.0 - 0.5 * s;
+        value = y + (((1.0 - y) - 0.5 * s) - r * low + s * s * (1.0 / 24.0 - s * (1.0 /
+            720.0 - s * (1.0 / 40320.0 - s * (1.0 / 3628800.0 - s * (1.0 / 479001600.0 -
+            s * (1.0 / 87178291200.0 - s * (1.0 / 20922789888000.0 - s * (1.0 /
+            6402373705728000.0 - s * (1.0 / 2432902008176640000.0))))))))));
+    }
+    return k == 1 || k == 2 ? -value : value;
+}
+""",
     "sqrt": """
 /* Square root, correctly rounded, digit by digit. Define FUZZYTRACK_SQRT to use that of the
    processor or of the mathematical library, which has the same bits. */
@@ -388,8 +442,10 @@ INLINE double NAME_pow(double x, double y)
     }
     if (size == 0.0 || size == (double)INFINITY) {
         result = (size == 0.0) == (y < 0.0) ? (double)INFINITY : 0.0;
+    } else if (size == 1.0) {
+        result = 1.0;
     } else if (y == (double)INFINITY || y == -(double)INFINITY) {
-        result = size == 1.0 ? 1.0 : ((size > 1.0) == (y > 0.0) ? (double)INFINITY : 0.0);
+        result = (size > 1.0) == (y > 0.0) ? (double)INFINITY : 0.0;
     } else {
         NAME_log_parts(size, &high, &low);
         product = y * high;
@@ -410,6 +466,32 @@ INLINE double NAME_pow(double x, double y)
 }
 
 _FLOAT = {
+    "circular": """
+/* Cosine of an angle up to 1.6e6, or with quarters = 3 its sine; beyond, NaN. */
+INLINE float NAME_circular(float x, int32_t quarters)
+{
+    int32_t k;
+    double r;
+    double s;
+    double value;
+    if (!(x < 1.6e6f && x > -1.6e6f)) {
+        return NAN;
+    }
+    k = (int32_t)((double)x * 0.6366197723675814 + (x < 0.0f ? -0.5 : 0.5));
+    r = ((double)x - (double)k * 1.5707963267341256) - (double)k * 6.077100506506192e-11;
+    s = r * r;
+    k = (k + quarters) % 4;
+    k = k < 0 ? k + 4 : k;
+    if (k == 1 || k == 3) {
+        value = r - r * s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0 - s * (1.0
+            / 362880.0 - s * (1.0 / 39916800.0)))));
+    } else {
+        value = 1.0 - s * (1.0 / 2.0 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * (1.0 /
+            40320.0 - s * (1.0 / 3628800.0 - s * (1.0 / 479001600.0))))));
+    }
+    return (float)(k == 1 || k == 2 ? -value : value);
+}
+""",
     "sqrt": """
 /* Square root, correctly rounded, digit by digit. Define FUZZYTRACK_SQRT to use that of the
    processor or of the mathematical library, which has the same bits. */
@@ -554,8 +636,10 @@ INLINE float NAME_pow(float x, float y)
     }
     if (size == 0.0f || size == INFINITY) {
         result = (size == 0.0f) == (y < 0.0f) ? INFINITY : 0.0f;
+    } else if (size == 1.0f) {
+        result = 1.0f;
     } else if (y == INFINITY || y == -INFINITY) {
-        result = size == 1.0f ? 1.0f : ((size > 1.0f) == (y > 0.0f) ? INFINITY : 0.0f);
+        result = (size > 1.0f) == (y > 0.0f) ? INFINITY : 0.0f;
     } else {
         NAME_log_parts(size, &high, &low);
         product = (double)y * ((double)high + (double)low);

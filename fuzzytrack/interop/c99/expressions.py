@@ -673,7 +673,7 @@ class ExpressionWriter:
     def function_of_math(self, node: ast.AST, name: str, *arguments: Scalar) -> Scalar:
         """Call of a function with that name in Python's and in C's mathematical library."""
         self.cost(name)
-        own = name in ("sqrt", "exp", "log", "pow")
+        own = name in ("sqrt", "exp", "log", "pow", "cos", "sin") and name not in self.program.libm
         texts = ", ".join(argument.text for argument in arguments)
         function = (
             self.program.helper(name) if own else self.program.library(self.definition, node, name)

@@ -89,8 +89,8 @@ def translated(
         For each argument ``"number"``, or for a tuple a tuple of these; numbers unless given.
     libm : collection of str
         Functions of C's mathematical library that may be called, such as ``("sin",)``; the program
-        must then be linked with it. Square roots, exponentials, logarithms and powers do not need
-        it.
+        must then be linked with it. Square roots, exponentials, logarithms, powers, sines and
+        cosines do not need it.
 
     Returns
     -------
@@ -110,7 +110,9 @@ def translated(
     Notes
     -----
     Operations are those of Python, in the same order; results in double precision differ from
-    Python's in the last bits only where `math.exp`, `math.log` or a power is used. Where Python
+    Python's in the last bits only where `math.exp`, `math.log`, `math.cos`, `math.sin` or a power
+    is used. Sine and cosine of angles beyond 1.6e6 are NaN, unless those of C are allowed. Where a
+    value may be an integer or a floating-point number, it is a floating-point number. Where Python
     raises an error about numbers, C code goes on as compiled trackers do: a division by 0 gives
     infinity or NaN, the square root of a negative number NaN, an exponential that is too large
     infinity. Integers have 64 bits, and take the nearest value that there is where a result is too
