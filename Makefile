@@ -107,6 +107,8 @@ walk: ## Run every command of README and quickstart in a fresh clone, with nothi
 
 fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule bases and rows of CSV, FUZZ_FILES files of each other format, scans and messages
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
+	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_FILES) --format fis
+	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_FILES) --format fll
 	$(BIN)/python tests/fuzz_readers.py --count $(FUZZ_FILES)
 	$(BIN)/python tests/fuzz_files.py --rows $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_scans.py --scans $(FUZZ_FILES)

@@ -30,8 +30,8 @@ _OPTION = re.compile(r":([^\W\d][\w.-]*)=([^:]*)$")
 # A comma before a parameter, where a colon should be, and a parameter where the name should be.
 _COMMA = re.compile(r"\s*,\s*(?=[^\W\d]\w*\s*=)")
 _BARE = re.compile(r"\s*[^\W\d]\w*\s*=")
-_FILE = (".yaml", ".yml")
-_SUFFIX = re.compile(r"\.ya?ml", re.IGNORECASE)
+_FILE = (".yaml", ".yml", ".fis", ".fll")
+_SUFFIX = re.compile(r"\.(?:ya?ml|fis|fll)", re.IGNORECASE)
 
 
 def is_file(name: str) -> bool:

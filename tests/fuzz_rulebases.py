@@ -1,7 +1,8 @@
-"""Fuzz the rule-base loader: every text must load, or be refused with a located RuleBaseError.
+"""Fuzz the rule-base loaders: every text must load, or be refused with a located RuleBaseError.
 
-Run as ``python tests/fuzz_rulebases.py --count 1000000 --seed 1 --jobs 2``. A text is made from
-the seed and its number alone, so that any finding can be repeated.
+Run as ``python tests/fuzz_rulebases.py --count 1000000 --seed 1 --jobs 2``; with ``--format fis``
+or ``fll`` the readers of these formats. A text is made from the seed and its number alone, so that
+any finding can be repeated. None may take more than two seconds of CPU time.
 """
 
 from __future__ import annotations
@@ -13,17 +14,35 @@ import re
 import resource
 import sys
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 
 import yaml
 
 from fuzzytrack import yamltree
 from fuzzytrack.errors import RuleBaseError
-from fuzzytrack.fuzzy.loading import loads_rulebase, rulebase_path, shipped_rulebases
+from fuzzytrack.fuzzy.formats.conversion import WRITERS
+from fuzzytrack.fuzzy.formats.fis_reader import loads_fis
+from fuzzytrack.fuzzy.formats.fll_reader import loads_fll
+from fuzzytrack.fuzzy.loading import (
+    load_rulebase,
+    loads_rulebase,
+    rulebase_path,
+    shipped_rulebases,
+)
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 
 CHUNK = 500
+SECONDS = 2.0
+LOADERS: dict[str, Callable[[bytes, str], RuleBase]] = {
+    "yaml": loads_rulebase,
+    "fis": loads_fis,
+    "fll": loads_fll,
+}
 ROUND_TRIPS = 20  # one accepted text in so many is also written and read again
 
 META = [b"[", b"]", b"{", b"}", b":", b": ", b"- ", b"#", b" #", b"&a ", b"*a", b"!", b"!!str "]
@@ -36,6 +55,12 @@ NUMBERS += ["١".encode(), b"--1", b"", b"1.5", b"2", b"0.1", b"-1", b"true", b"
 WORDS = [b"no", b"on", b"null", b"nl", b"Z", b"S-L", b"S-L@0.5", b"S@2", b"@", b"-", b"class"]
 WORDS += [b"rulebase", b"inputs", b"if", b"if any", b"then", b"table", b"columns", b"default"]
 WORDS += [b"sigmf", b"smf", b"gbellmf", b"singleton", b"pimf", b"gauss2mf", b"midpoints", b"max"]
+# Words of the formats of other programs.
+META += [b"'", b"%", b"(", b")", b" : ", b",", b"[System]\n", b"[Input1]\n", b"[Rules]\n"]
+META += [b"% fuzzytrack grids ", b"# fuzzytrack defaults ", b"Engine:\n", b"RuleBlock:\n"]
+WORDS += [b"1.20", b"-1", b"-2.05", b"0", b"99", b"'linear',[1", b"'constant',[2]", b"'probor'"]
+WORDS += [b"is", b"not", b"very", b"any", b"and", b"or", b"(", b")", b"with", b"none", b"Function"]
+WORDS += [b"Linear", b"Discrete", b"AlgebraicSum", b"WeightedAverage", b"Centroid", b"extremely"]
 
 NUMBER = re.compile(rb"[0-9][0-9.]*")
 Mutation = Callable[[random.Random, bytes], bytes]
@@ -130,7 +155,8 @@ def anchors(rng: random.Random, text: bytes) -> bytes:
 
 
 def splice(rng: random.Random, text: bytes) -> bytes:
-    other = rng.choice(SOURCES)
+    form = "fis" if b"[System]" in text else "fll" if b"Engine:" in text else "yaml"
+    other = rng.choice(sources(form))
     return text[: spot(rng, text)] + other[spot(rng, other) :]
 
 
@@ -148,11 +174,29 @@ WEIGHTS = [3, 3, 3, 1, 4, 6, 8, 0.5, 0.3, 0.3, 0.5, 1, 0.1]
 SOURCES = [rulebase_path(name).read_bytes() for name in shipped_rulebases()]
 
 
-def mutants(seed: int, start: int, count: int) -> Iterator[bytes]:
+@cache
+def sources(form: str) -> list[bytes]:
+    """Texts in a format that load: shipped rule bases, and in other formats random ones as well."""
+    if form == "yaml":
+        return SOURCES
+    sys.path.insert(0, str(Path(__file__).resolve().parent / "fuzzy"))
+    from random_bases import random_base
+
+    bases = [*map(load_rulebase, shipped_rulebases()), *map(random_base, range(150))]
+    texts = []
+    for rules in bases:
+        try:
+            texts.append(WRITERS[f".{form}"](rules).text.encode())
+        except RuleBaseError:  # the format lacks something
+            continue
+    return texts
+
+
+def mutants(seed: int, start: int, count: int, form: str = "yaml") -> Iterator[bytes]:
     """Texts number `start` to ``start + count``."""
     for index in range(start, start + count):
         rng = random.Random(f"{seed}/{index}")
-        text = rng.choice(SOURCES)
+        text = rng.choice(sources(form))
         for mutation in rng.choices(MUTATIONS, WEIGHTS, k=rng.choice((1, 1, 1, 2, 3, 6))):
             text = mutation(rng, text)
         yield text
@@ -182,15 +226,17 @@ class Report:
         return self.accepted + self.refused + len(self.failures)
 
 
-def attempt(text: bytes, index: int, report: Report) -> None:
+def attempt(text: bytes, index: int, report: Report, form: str = "yaml") -> None:
     started = time.process_time()  # others may be using the machine
     rules = None
     try:
-        rules = loads_rulebase(text, "fuzz.yaml")
+        rules = LOADERS[form](text, f"fuzz.{form}")
         report.accepted += 1
     except RuleBaseError as error:
         if error.location is None:
             report.failures.append(f"text {index}: no location: {error}")
+        elif "\n" in str(error):
+            report.failures.append(f"text {index}: more than one line: {error}")
         else:
             report.refused += 1
     except Exception as error:
@@ -198,28 +244,45 @@ def attempt(text: bytes, index: int, report: Report) -> None:
     elapsed = time.process_time() - started
     if elapsed > report.slowest:
         report.slowest, report.slowest_index = elapsed, index
+    if elapsed > SECONDS:
+        report.failures.append(f"text {index}: {elapsed:.2f} s")
     if rules is not None and index % ROUND_TRIPS == 0:
         try:
-            dumps_rulebase(rules)  # reads again what it wrote, and compares
+            if form == "yaml":
+                dumps_rulebase(rules)  # reads again what it wrote, and compares
+            else:
+                write(rules, form)
         except Exception as error:
             report.failures.append(f"text {index}: cannot be written: {error}")
 
 
-def run(seed: int, start: int, count: int) -> Report:
+def write(rules: RuleBase, form: str) -> None:
+    """Write a rule base in every format that has it, and read what was written in its own."""
+    for suffix, writer in WRITERS.items():
+        try:
+            text = writer(rules).text
+        except RuleBaseError:  # the format lacks something
+            continue
+        if suffix == f".{form}":
+            LOADERS[form](text.encode(), "again")
+
+
+def run(seed: int, start: int, count: int, form: str = "yaml") -> Report:
     """Try texts number `start` to ``start + count``."""
     report = Report()
-    for index, text in enumerate(mutants(seed, start, count), start):
-        attempt(text, index, report)
+    for index, text in enumerate(mutants(seed, start, count, form), start):
+        attempt(text, index, report, form)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     report.peak_kib = peak // 1024 if sys.platform == "darwin" else peak
     return report
 
 
-def _chunk(task: tuple[int, int, int, bool]) -> Report:
-    seed, start, count, pure = task
+def _chunk(task: tuple[int, int, int, bool, str]) -> Report:
+    seed, start, count, pure, form = task
     if pure:
         yamltree._LOADER = yaml.SafeLoader
-    return run(seed, start, count)
+    warnings.simplefilter("error")
+    return run(seed, start, count, form)
 
 
 def show(done: Report, count: int, started: float, last: bool) -> None:
@@ -243,10 +306,12 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--first", type=int, default=0, help="number of the first text")
     parser.add_argument("--pure", action="store_true", help="use PyYAML's parser without libyaml")
+    parser.add_argument("--format", choices=LOADERS, default="yaml", help="which reader")
     options = parser.parse_args()
+    sources(options.format)
     stop = options.first + options.count
     tasks = [
-        (options.seed, start, min(CHUNK, stop - start), options.pure)
+        (options.seed, start, min(CHUNK, stop - start), options.pure, options.format)
         for start in range(options.first, stop, CHUNK)
     ]
     done, started, shown = Report(), time.perf_counter(), 0.0

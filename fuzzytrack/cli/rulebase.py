@@ -35,7 +35,7 @@ __all__ = ["rulebase"]
 rulebase = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
-    help="List, show, copy, check, explain, edit and export rule bases.",
+    help="List, show, copy, check, explain, convert, edit and export rule bases.",
     rich_markup_mode=None,
 )
 
@@ -75,7 +75,7 @@ def show(
     """Show variables, sets and rules."""
     rules = load_rulebase(name)
     if plot is not None:
-        save_picture(plot, lambda: _picture(rules), (rulebase_path(name),))
+        save_picture(plot, lambda: _picture(rules), (Path(name),))
     if json:
         print_json(rulebase_as_json(rules))
     else:
@@ -201,6 +201,37 @@ def _next_steps(file: str) -> None:
     say(f"  fuzzytrack surface {name}{others and f' --at {others}'} -o surface.png")
     if review(rules).schedules:
         say(f"  fuzzytrack track plots.csv --tracker {name}")
+
+
+@rulebase.command()
+def convert(
+    origin: Annotated[
+        str, typer.Argument(metavar="IN", help="Shipped name, or file: .yaml, .fis or .fll.")
+    ],
+    output: Annotated[
+        str, typer.Argument(metavar="OUT", help="The file: .yaml, .fis (MATLAB), .fll (fuzzylite).")
+    ],
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
+    json: options.Json = False,
+) -> None:
+    """Write a rule base in the format of another program, or read one; see the guide."""
+    from fuzzytrack.fuzzy.formats.conversion import translated
+    from fuzzytrack.io.files import check_output, whole_file
+
+    rules, target = load_rulebase(origin), Path(output)
+    found = translated(rules, target)
+    source = rulebase_path(origin) if origin in shipped_rulebases() else Path(origin)
+    check_output(target, (source,))
+    if target.exists() and not force:
+        raise FileExistsError(None, "exists; name another file, or replace it with --force", output)
+    with whole_file(target) as draft:
+        draft.write_bytes(found.text.encode("utf-8"))
+    for note in found.notes:
+        typer.echo(f"note: {note}", err=True)
+    if json:
+        print_json({"from": origin, "file": output, "notes": list(found.notes)})
+    else:
+        say(f"wrote {output}")
 
 
 @rulebase.command("set")

@@ -144,6 +144,30 @@ def _two_gaussians(parameters: Parameters, x: str) -> str:
     return f"({left} if {x} <= {mean1!r} else 1.0) * ({right} if {x} > {mean2!r} else 1.0)"
 
 
+def _two_gaussians_meet(parameters: Parameters) -> bool:
+    mean1, sigma1, mean2, sigma2 = parameters
+    proper = sigma1 >= _TINY and sigma2 >= _TINY
+    # Sides that lie farther apart have a product of 0 in floats.
+    return proper and mean1 <= mean2 + 20.0 * (sigma1 + sigma2)
+
+
+def _two_gaussians_core(parameters: Parameters) -> tuple[float, float]:
+    """From mean to mean; if they are in the other order, where the product is largest."""
+    mean1, sigma1, mean2, sigma2 = parameters
+    if mean1 <= mean2:
+        return mean1, mean2
+    share = 1.0 / (1.0 + (sigma1 / sigma2) ** 2)
+    peak = mean2 + share * (mean1 - mean2)
+    return peak, peak
+
+
+def _two_gaussians_values(parameters: Parameters, x: Array) -> Array:
+    mean1, sigma1, mean2, sigma2 = parameters
+    left = np.exp(-((x - mean1) ** 2) / (2 * sigma1**2))
+    right = np.exp(-((x - mean2) ** 2) / (2 * sigma2**2))
+    return np.where(x <= mean1, left, 1.0) * np.where(x > mean2, right, 1.0)
+
+
 def _bell(parameters: Parameters, x: str) -> str:
     a, b, c = parameters
     # Where the power passes 1e300 the grade is zero and Python's ** would overflow.
@@ -293,12 +317,14 @@ SHAPES: dict[str, Shape] = _Shapes(
         ),
         "gauss2mf": Shape(
             ("mean1", "sigma1", "mean2", "sigma2"),
-            "mean1 <= mean2, sigma1 > 0, sigma2 > 0 (from 1e-100)",
-            lambda p: p[0] <= p[2] and p[1] >= _TINY and p[3] >= _TINY,
-            lambda p: (p[0], p[2]),
+            "mean1 <= mean2 + 20 (sigma1 + sigma2), sigma1 > 0, sigma2 > 0 (from 1e-100)",
+            _two_gaussians_meet,
+            _two_gaussians_core,
             lambda p: (p[0] - _SIGMAS * p[1], p[2] + _SIGMAS * p[3]),
             lambda p: (p[0], p[2]),
             _two_gaussians,
+            _two_gaussians_values,
+            ones=lambda p: (Stretch(p[0], p[2], True, True),) if p[0] <= p[2] else (),
         ),
         "gbellmf": Shape(
             ("a", "b", "c"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
@@ -100,11 +101,12 @@ class Rule:
         return (self.conditions, *self.alternatives)
 
     @property
-    def key(self) -> frozenset[tuple[str, str] | frozenset[tuple[str, str]]]:
+    def key(self) -> frozenset[object]:
         """What no two rules of a rule base have in common: all conditions, in no order."""
         if not self.alternatives:
             return frozenset(self.conditions)
-        return frozenset(map(frozenset, self.groups))
+        # The same group twice counts twice, unless the maximum is taken.
+        return frozenset(Counter(map(frozenset, self.groups)).items())
 
     def asks(self, name: str, silent: str = "") -> str:
         """What the rule asks of an input, in words; `silent` where it does not matter."""

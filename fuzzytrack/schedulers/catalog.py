@@ -94,7 +94,8 @@ def take_scheduler(
     if name not in schedulers.names():
         names = (*scheduling_rulebases(), *schedulers.names())
         raise ValueError(
-            f"no such scheduler{suggestion(name, names)}; or a file that ends in .yaml"
+            f"no such scheduler{suggestion(name, names)}; or a file that ends in .yaml, .fis "
+            "or .fll"
         )
     return _take(schedulers.get(name), {}, options, others)
 

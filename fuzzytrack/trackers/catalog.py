@@ -259,7 +259,9 @@ def _make(name: str, options: dict[str, str]) -> Any:
     if kind is None and not specs.is_file(name):
         refuse_other_files(name)
         names = (*scheduling_rulebases(), *schedulers.names(), *trackers.names())
-        raise ValueError(f"no such tracker{suggestion(name, names)}; or a file that ends in .yaml")
+        raise ValueError(
+            f"no such tracker{suggestion(name, names)}; or a file that ends in .yaml, .fis or .fll"
+        )
     scheduler = take_scheduler(name, options, _start_parameters())
     return specs.call_with(AlphaBetaTracker, options, READERS, {"scheduler": scheduler})
 

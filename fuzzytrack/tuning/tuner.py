@@ -219,7 +219,7 @@ def _candidates(
         # As it will be run on such plots.
         spec, _ = suited(tracker, as_tracker(tracker), axes_differ=data.axes_differ)
         _, options = specs.split(spec, "tracker")
-        path = Path(name) if specs.is_file(name) else rulebase_path(name)
+        path = rulebase_path(Path(name) if specs.is_file(name) else name)
         with open(path, encoding="utf-8", newline="") as stream:
             text = stream.read()
         return rulebase_numbers(text, name, options, free)

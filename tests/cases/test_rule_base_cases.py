@@ -67,10 +67,15 @@ def test_an_input_out_of_range_counts_as_its_nearest_end_and_gives_no_default(x)
     assert (at_end == 2) == (abs(x) <= 0.2)
 
 
-@pytest.mark.parametrize("name", ["rise.fis", "deep/rise.FLL", "rise.fcl"])
-def test_files_of_other_programs_are_named_as_such(name):
-    with pytest.raises(ft.RuleBaseError, match="is not read; write its sets and rules as a rule b"):
-        ft.load_rulebase(name)
+def test_files_of_other_programs_are_read_or_named_as_such(tmp_path):
+    with pytest.raises(ft.RuleBaseError, match="IEC 61131-7, which is not read"):
+        ft.load_rulebase("rise.fcl")
+    half = tmp_path / "rise.FIS"
+    half.write_text("[System]\nName='rise'\nType='mamdani'\n[Input1]\nName='ratio'\nRange=[0 1]\n")
+    with pytest.raises(ft.RuleBaseError, match=r"rise\.FIS:1:1: AndMethod is missing"):
+        ft.load_rulebase(half)
+    with pytest.raises(ft.RuleBaseError, match=r"cannot read rule base 'deep/rise\.FLL'"):
+        ft.load_rulebase("deep/rise.FLL")
 
 
 # ------------------------------------------------------------------ sparse rules

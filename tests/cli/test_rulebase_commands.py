@@ -491,3 +491,59 @@ def test_a_mistake_in_new_is_one_line(fails, tmp_path, monkeypatch, origin, outp
     monkeypatch.chdir(tmp_path)
     assert message in fails("rulebase", "new", origin, "-o", output)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_convert(run, fails, tmp_path):
+    fis, fll, back = (tmp_path / name for name in ("tip.fis", "tip.fll", "back.yaml"))
+    assert run("rulebase", "convert", "tipper", str(fis)).stdout.endswith(f"wrote {fis}\n")
+    run("rulebase", "convert", str(fis), str(fll))
+    run("rulebase", "convert", str(fll), str(back))
+    point = {"service": 3.3, "food": 7.9}
+    expected = FuzzySystem("tipper")(**point)["tip"]
+    for file in (fis, fll, back):
+        assert FuzzySystem(str(file))(**point)["tip"] == pytest.approx(expected, abs=1e-12)
+    assert "exists" in fails("rulebase", "convert", "tipper", str(fis))
+    before = fis.read_bytes()
+    run("rulebase", "convert", "valve", str(fis), "--force")
+    assert fis.read_bytes() != before
+    assert "must end in one of .yaml, .yml, .fis, .fll" in fails(
+        "rulebase", "convert", "tipper", str(tmp_path / "tip.txt")
+    )
+
+
+def test_convert_says_where_the_other_program_computes_otherwise(run, tmp_path):
+    found = json.loads(
+        run("rulebase", "convert", "valve", str(tmp_path / "v.fll"), "--json").stdout
+    )
+    (note,) = found["notes"]
+    assert note.startswith("opening is summed over 121 points with both ends; fuzzylite takes")
+
+
+def test_convert_writes_nothing_that_the_format_lacks(fails, mine, tmp_path):
+    text = mine.read_text(encoding="utf-8")
+    assert "and: product" in text
+    mine.write_text(text.replace("and: product", "and: einstein-product"), encoding="utf-8")
+    out = tmp_path / "x.fis"
+    said = fails("rulebase", "convert", str(mine), str(out))
+    assert "and einstein-product has no counterpart in FIS" in said
+    assert not out.exists()
+
+
+def test_other_formats_are_checked_shown_and_explained_but_not_edited(run, fails, tmp_path):
+    fis = tmp_path / "sd.fis"
+    run("rulebase", "convert", "stiffness-damping", str(fis))
+    assert "sd.fis: ok" in run("rulebase", "check", str(fis)).stdout
+    assert "normalization chan" in run("rulebase", "check", str(fis)).stdout
+    run("rulebase", "show", str(fis), "--plot", str(tmp_path / "sd.png"))
+    run("rulebase", "explain", str(fis), "--at", "E=0.3,dE=-0.1")
+    run("surface", str(fis), "-o", str(tmp_path / "surface.png"))
+    for command in (
+        ["set", str(fis), "M-Z", "--cell", "dE=ns,E=pl"],
+        ["new", str(fis), "-o", str(tmp_path / "new.yaml")],
+    ):
+        said = fails("rulebase", *command)
+        assert "only YAML is edited; first convert it, fuzzytrack rulebase convert" in said
+    broken = tmp_path / "broken.fis"
+    broken.write_text(fis.read_text("utf-8").replace("'constant',[0.25]", "'constant',[x]"))
+    assert f"{broken}:" in fails("rulebase", "check", str(broken))
+    assert "must be a finite number" in fails("track", "p.csv", "--tracker", str(broken))

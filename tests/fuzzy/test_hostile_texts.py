@@ -81,3 +81,12 @@ def test_fuzzed_texts_load_or_are_refused():
     # a fuzzer whose texts all fail, or all pass, tests nothing
     assert report.accepted > 50
     assert report.refused > 500
+
+
+@pytest.mark.untraced
+@pytest.mark.parametrize("form", ["fis", "fll"])
+def test_fuzzed_texts_of_other_formats_load_or_are_refused(form):
+    report = fuzz_rulebases.run(seed=1, start=0, count=700, form=form)
+    assert report.failures == []
+    assert report.accepted > 50
+    assert report.refused > 300

@@ -54,6 +54,7 @@ OWN_CASES = [
     ("arc", (-0.5, 0.75)),
     ("arc", (0.75, -0.5)),
     ("ellipse", (-0.5, 0.75)),
+    ("gauss2mf", (0.5, 0.4, -0.25, 0.3)),
 ]
 # Where scikit-fuzzy itself divides zero by zero; (parameters, grade is one on [low, high]).
 STEPS = [
@@ -124,7 +125,14 @@ def mirrored(function):
     return lambda x, a, b: function(x, a, b) if a < b else function(-x, -a, -b)
 
 
+def side(x, mean, sigma, sign):
+    return (
+        math.prod([math.exp(-(((x - mean) / sigma) ** 2) / 4)] * 2) if sign * x > sign * mean else 1
+    )
+
+
 ORACLES = {
+    "gauss2mf": lambda x, m, s, n, t: side(x, m, s, -1) * side(x, n, t, 1),
     "linsmf": lambda x, a, b: lines([(a, 0), (b, 1)], x),
     "linzmf": lambda x, a, b: lines([(a, 1), (b, 0)], x),
     "dsigmf": lambda x, a, s, b, t: abs(tanh_sigmoid(x, a, s) - tanh_sigmoid(x, b, t)),
@@ -248,6 +256,7 @@ def test_any_array_shape_and_nan(shape, parameters):
         ("trapmf", (-3.0, -2.0, 0.5, 0.7), (-1.0, 0.5), -0.25),
         ("gaussmf", (0.3, 0.1), (0.3, 0.3), 0.3),
         ("gauss2mf", (0.1, 0.2, 0.4, 0.5), (0.1, 0.4), 0.25),
+        ("gauss2mf", (0.5, 0.4, -0.25, 0.4), (0.125, 0.125), 0.125),
         ("gbellmf", (0.4, 2.0, -0.2), (-0.2, -0.2), -0.2),
         ("sigmf", (0.0, 3.0), (1.0, 1.0), 1.0),
         ("sigmf", (0.0, -3.0), (-1.0, -1.0), -1.0),
@@ -278,7 +287,7 @@ def test_core_and_center(shape, parameters, core, center):
         ("gaussmf", (1e101, 1), ("'near'", "1e100", "1e+101")),
         ("gaussmf", (0, 0), ("'near'", "sigma > 0", "0.0")),
         ("gaussmf", (0, 1e-200), ("'near'", "sigma > 0 (from 1e-100)", "1e-200")),
-        ("gauss2mf", (1, 1, 0, 1), ("'near'", "mean1 <= mean2", "1.0, 1.0, 0.0")),
+        ("gauss2mf", (41, 1, 0, 1), ("'near'", "mean1 <= mean2 + 20", "41.0, 1.0, 0.0")),
         ("gauss2mf", (0, 1, 1, -1), ("'near'", "sigma2 > 0", "-1.0")),
         ("gbellmf", (0, 1, 0), ("'near'", "a > 0", "[0.0, 1.0, 0.0]")),
         ("gbellmf", (1, -1, 0), ("'near'", "b > 0", "-1.0")),
@@ -311,6 +320,9 @@ def fuzzy_sets(draw):
     elif shape == "gauss2mf":
         low, high = sorted([draw(finite), draw(finite)])
         parameters = [low, draw(widths), high, draw(widths)]
+        crossed = [high, parameters[1], low, parameters[3]]
+        if high - low <= 19 * (parameters[1] + parameters[3]) and draw(st.booleans()):
+            parameters = crossed
     elif shape == "gbellmf":
         parameters = [draw(widths), draw(st.floats(1e-100, 1e6)), draw(finite)]
     elif shape in ("dsigmf", "psigmf"):

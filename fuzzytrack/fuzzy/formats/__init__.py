@@ -1,0 +1,1 @@
+"""Rule bases in the formats of other programs: FIS of MATLAB and FLL of fuzzylite."""

@@ -1,0 +1,155 @@
+"""Rule bases there and back, through every format."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_bases import random_base
+
+import fuzzytrack as ft
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.formats import fis_words
+from fuzzytrack.fuzzy.formats.conversion import WRITERS, translated
+from fuzzytrack.fuzzy.formats.fis_reader import loads_fis
+from fuzzytrack.fuzzy.formats.fll_reader import loads_fll
+from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, shipped_rulebases
+from fuzzytrack.fuzzy.saving import dumps_rulebase
+
+READERS = {".fis": loads_fis, ".fll": loads_fll}
+FIS = [*fis_words.SHAPES]
+
+
+def largest_gap(rules, other, count):
+    rng = np.random.default_rng(5)
+    ends = [(v.universe.low, v.universe.high) for v in rules.inputs]
+    points = np.stack([rng.uniform(a - 0.1, b + 0.1, count) for a, b in ends], axis=1)
+    first, second = (ft.FuzzySystem(r).evaluate(points) for r in (rules, other))
+    assert list(first) == list(second)
+    gaps = []
+    for name, values in first.items():
+        assert np.array_equal(np.isnan(values), np.isnan(second[name]))
+        gaps.append(np.nanmax(np.abs(values - second[name]), initial=0.0))
+    return max(gaps)
+
+
+def expressible(seed, suffix):
+    """A random rule base that the format can have."""
+    fis = suffix == ".fis"
+    rules = random_base(
+        seed, shapes=FIS if fis else None, hedges=False, algebras=not fis, alternatives=not fis,
+        own_operators=not fis,
+    )  # fmt: skip
+
+    def fitting(operators):
+        sums = fis and operators.defuzzification == "weighted-centers"
+        disjunction = "sum" if sums else operators.disjunction
+        return replace(operators, weighting="product", disjunction=disjunction)
+
+    outputs = [replace(v, operators=v.operators and fitting(v.operators)) for v in rules.outputs]
+    return replace(rules, operators=fitting(rules.operators), outputs=tuple(outputs))
+
+
+@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("name", shipped_rulebases())
+def test_shipped_rule_bases_keep_their_values_and_settings(name, suffix):
+    rules = load_rulebase(name)
+    again = READERS[suffix](translated(rules, f"x{suffix}").text, "x")
+    assert largest_gap(rules, again, 1000) <= 1e-12
+    assert dict(again.scheduler) == dict(rules.scheduler)
+    assert (again.name, again.description, again.source) == (
+        rules.name, rules.description, rules.source
+    )  # fmt: skip
+    assert [(v.label, v.unit, v.universe) for v in (*again.inputs, *again.outputs)] == [
+        (v.label, v.unit, v.universe) for v in (*rules.inputs, *rules.outputs)
+    ]
+    assert translated(again, f"x{suffix}").text == translated(
+        READERS[suffix](translated(again, f"x{suffix}").text, "x"), f"x{suffix}"
+    ).text  # fmt: skip
+
+
+@pytest.mark.parametrize("suffix", READERS)
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_random_rule_bases_keep_their_values(suffix, seed):
+    rules = expressible(seed, suffix)
+    text = translated(rules, f"x{suffix}").text
+    again = READERS[suffix](text.encode(), "x")
+    assert largest_gap(rules, again, 100) <= 1e-12
+    assert loads_rulebase(dumps_rulebase(again)) == again
+
+
+@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("seed", range(60))
+def test_what_is_not_refused_is_right(suffix, seed):
+    rules = random_base(seed)
+    try:
+        text = translated(rules, f"x{suffix}").text
+    except RuleBaseError as error:
+        message = str(error)
+    else:
+        assert largest_gap(rules, READERS[suffix](text, "x"), 50) <= 1e-12
+        return
+    assert message.endswith(f"no counterpart in {suffix[1:].upper()}")
+
+
+def test_files_are_loaded_by_their_suffix(tmp_path):
+    rules = load_rulebase("valve")
+    for suffix in WRITERS:
+        path = tmp_path / f"valve{suffix.upper()}"
+        path.write_text(translated(rules, path).text, encoding="utf-8")
+        if suffix in READERS:
+            again = load_rulebase(path)
+            assert eval(repr(again), {"load_rulebase": load_rulebase}) == again
+            assert ft.FuzzySystem(str(path)).rules == again
+    with pytest.raises(ValueError, match=r"path: valve\.fcl must end in one of \.yaml"):
+        translated(rules, "valve.fcl")
+
+
+def test_trackers_take_such_files(tmp_path):
+    path = tmp_path / "mine.fis"
+    path.write_text(translated(load_rulebase("stiffness-damping"), path).text, encoding="utf-8")
+    plots = np.cumsum(np.ones((30, 2)), axis=0) + np.random.default_rng(1).normal(0, 0.1, (30, 2))
+    first = ft.AlphaBetaTracker(str(path)).run(np.arange(30.0), plots)
+    second = ft.AlphaBetaTracker("stiffness-damping").run(np.arange(30.0), plots)
+    np.testing.assert_allclose(first.filtered, second.filtered, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('% fuzzytrack grids {"nosuch": [5, "ends"]}', "grids: no variable 'nosuch'"),
+        (
+            '% fuzzytrack grids {"tip": [5, "middles"]}',
+            "tip needs up to 100001 points and one of",
+        ),
+        (f'% fuzzytrack grids {{"tip": [{"9" * 400}, "ends"]}}', "grids: tip needs up to 100001"),
+        ("% fuzzytrack grids [1]", "is not the JSON that is expected"),
+        ("% fuzzytrack grids {", "is not the JSON that is expected"),
+        ("% fuzzytrack grids " + "[" * 5000, "is not the JSON that is expected"),
+        ('% fuzzytrack defaults {"tip": "x"}', "defaults: tip needs a number or null"),
+        ('% fuzzytrack labels {"tip": 5}', "labels: tip needs a text"),
+        ('% fuzzytrack scheduler {"gains": 5}', "scheduler: settings are texts"),
+        ('% fuzzytrack table {"columns": "food"}', "table: needs columns, rows and cells"),
+        ("% fuzzytrack colors {}", "unknown part 'colors' of fuzzytrack"),
+    ],
+)
+def test_comments_of_this_package_that_are_broken_are_named(line, said):
+    text = translated(load_rulebase("tipper"), "x.fis").text
+    kept = [each for each in text.splitlines() if "% fuzzytrack" not in each]
+    assert loads_fis("\n".join(kept), "x").outputs[0].default == 15
+    with pytest.raises(RuleBaseError, match=rf"x:{len(kept) + 1}:\d+: .*{said}"):
+        loads_fis("\n".join([*kept, line]), "x")
+
+
+def test_names_are_made_proper():
+    text = translated(load_rulebase("tipper"), "x.fis").text
+    kept = "\n".join(each for each in text.splitlines() if "% fuzzytrack" not in each)
+    odd = kept.replace("'service'", "'1 class'").replace("'food'", "'class'")
+    odd = odd.replace("'poor'", "'good'").replace("'rancid'", "'a, b@c'")
+    rules = loads_fis(odd, "x")
+    assert rules.input_names == ("x_1_class", "x_class")
+    assert rules.inputs[0].set_names == ("good", "good_2", "excellent")
+    assert rules.inputs[1].set_names == ("a__b_c", "delicious")
+    assert loads_rulebase(dumps_rulebase(rules)) == rules
