@@ -231,3 +231,5 @@ class _FllWriter:
                     f"{output.name} is summed over {output.universe.points} points with both ends; "
                     f"fuzzylite takes the midpoints of {output.universe.points} cells"
                 )
+            if operators.defuzzification == "bisector":
+                yield f"{output.name}: the bisector of fuzzylite may be a cell off"
