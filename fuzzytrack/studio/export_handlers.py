@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,8 @@ __all__ = ["HANDLERS"]
 Answer = Mapping[str, Any]
 
 _RUNS = 200
+# Settings of matplotlib are those of all threads, and are changed while a report is written.
+_drawing = threading.Lock()
 _OF_SNIPPETS = (
     *("trackers", "runs", "seed", "name", "on", "tracker", "free", "trials", "folds"),
     *READING,
@@ -107,7 +110,7 @@ def report(page: Page, given: Arguments) -> Later:
     def work() -> Answer:
         from fuzzytrack.reports.html_report import write_report
 
-        with tempfile.TemporaryDirectory() as folder:
+        with _drawing, tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "report.html"
             write_report(path, results)
             return {"name": f"{results.scenario}.html", "text": path.read_text(encoding="utf-8")}
