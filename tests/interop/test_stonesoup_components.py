@@ -6,10 +6,13 @@ import pickle
 import numpy as np
 import pytest
 from ruamel.yaml.constructor import ConstructorError
-from stonesoup.dataassociator.neighbour import GNNWith2DAssignment
+from stonesoup.dataassociator.neighbour import GNNWith2DAssignment, NearestNeighbour
 from stonesoup.dataassociator.probability import JPDA, PDA
+from stonesoup.dataassociator.tree import DetectionKDTreeGNN2D
 from stonesoup.deleter.error import CovarianceBasedDeleter
+from stonesoup.deleter.multi import CompositeDeleter
 from stonesoup.deleter.time import UpdateTimeStepsDeleter
+from stonesoup.gater.distance import DistanceGater
 from stonesoup.hypothesiser.distance import DistanceHypothesiser
 from stonesoup.hypothesiser.probability import PDAHypothesiser
 from stonesoup.initiator.simple import MultiMeasurementInitiator, SimpleMeasurementInitiator
@@ -176,17 +179,48 @@ def test_many_targets_by_global_nearest_neighbors(spec):
     assert all(isinstance(state, ScheduledGaussianState) for track in tracks for state in track)
 
 
+def probabilities(predictor, updater):
+    return PDAHypothesiser(
+        predictor, updater, clutter_spatial_density=1e-6, prob_detect=0.9, prob_gate=0.99
+    )
+
+
+ASSOCIATORS = {
+    "gated": lambda p, u, distances: GNNWith2DAssignment(
+        DistanceGater(distances, Mahalanobis(), 5)
+    ),
+    "greedy": lambda p, u, distances: NearestNeighbour(distances),
+    "probabilities": lambda p, u, distances: GNNWith2DAssignment(probabilities(p, u)),
+    "tree": lambda p, u, distances: DetectionKDTreeGNN2D(
+        distances, p, u, number_of_neighbours=5, max_distance_covariance_multiplier=5
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ASSOCIATORS)
+def test_associators_are_used_as_they_are(name):
+    t, z, scans = many(2, steps=12)
+    predictor, updater, initiator = components(SPEC)
+    distances = DistanceHypothesiser(predictor, updater, Mahalanobis(), missed_distance=5)
+    associator = ASSOCIATORS[name](predictor, updater, distances)
+    deleter = CompositeDeleter([UpdateTimeStepsDeleter(3), CovarianceBasedDeleter(1e5)])
+    tracker = MultiTargetTracker(initiator, deleter, iter(scans), associator, updater)
+    _, tracks = list(tracker)[-1]
+    whole = [track for track in tracks if len(track) == len(t)]
+    expected = make_tracker(SPEC).run(t, z, SIGMA).filtered[-1]
+    ends = np.array([vector(track)[[0, 2]] for track in whole])
+    assert np.abs(ends[:, None] - expected).max(axis=2).min(axis=0).max() < 20.0
+
+
 @pytest.mark.parametrize(
     ("kind", "associator"), [(MultiTargetMixtureTracker, JPDA), (SingleTargetMixtureTracker, PDA)]
 )
 def test_mixture_trackers_are_refused(kind, associator):
     _, _, scans = many(3, steps=6)
     predictor, updater, initiator = components(SPEC)
-    hypothesiser = PDAHypothesiser(
-        predictor, updater, clutter_spatial_density=1e-6, prob_detect=0.9, prob_gate=0.99
-    )
     deleter = UpdateTimeStepsDeleter(5)
-    tracker = kind(initiator, deleter, iter(scans), associator(hypothesiser), updater)
+    mixture = associator(probabilities(predictor, updater))
+    tracker = kind(initiator, deleter, iter(scans), mixture, updater)
     with pytest.raises(ValueError, match=r"no memory of a tracker.*mixture tracker \(PDA, JPDA\)"):
         for _ in tracker:
             pass

@@ -14,6 +14,7 @@ from stonesoup_scenes import EPOCH, at, components, detected, followed, linear, 
 import fuzzytrack as ft
 from fuzzytrack.interop.stonesoup import from_stonesoup, stonesoup_metrics, to_stonesoup
 from fuzzytrack.scan import Scan, ScanTracker
+from fuzzytrack.scan.track_reports import TrackReports
 
 MODEL = linear((0, 2), 4)
 
@@ -77,6 +78,18 @@ def test_reports_have_their_variances():
     np.testing.assert_array_equal(
         states(found["2"])[-1], np.stack([last.position[-1], last.velocity[-1]], axis=-1).ravel()
     )
+
+
+def test_a_row_that_coasts_beside_a_plot_is_left_out():
+    reports = ScanTracker().run(scans(2)).reports
+    plot = int(np.flatnonzero(reports.status > 0)[-1])
+    doubled = TrackReports.joined([reports, reports.where(np.array([plot]))])
+    doubled.plot[-1], doubled.deviation[-1] = -1, 99.0
+    one, two = (
+        by_id(to_stonesoup(each))[str(reports.track_id[plot])] for each in (reports, doubled)
+    )
+    assert len(one) == len(two)
+    np.testing.assert_array_equal(one.covar, two.covar)
 
 
 def test_truth_and_positions_without_velocity():

@@ -7,7 +7,6 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from stonesoup.types.array import CovarianceMatrix, StateVector
 from stonesoup.types.detection import Detection
 from stonesoup.types.groundtruth import GroundTruthPath, GroundTruthState
@@ -268,13 +267,19 @@ def _batch(result: TrackResult) -> tuple[int, int]:
 
 
 def _deviations(tracks: Any, found: Positions) -> Array | None:
-    """Standard deviations of reported tracks in the order of their state vectors, if they fit."""
+    """Standard deviations of reported tracks in the order of their state vectors, if they have any.
+
+    Of a track that coasts beside a plot, the row with the plot is the one among the positions.
+    """
     reports = getattr(tracks, "reports", tracks)
     if not hasattr(reports, "deviation"):
         return None
-    every: NDArray[Any] = reports.deviation[np.asarray(reports.status) > 0]
-    # A row that coasts beside a plot was left out.
-    return every[:, [0, 2, 1, 3]] if len(every) == len(found) else None
+    seen_last = np.argsort(np.asarray(reports.plot) >= 0, kind="stable").tolist()
+    names, times = reports.track_id.tolist(), reports.time.tolist()
+    rows = {(names[row], times[row]): row for row in seen_last}
+    chosen = [rows[key] for key in zip(found.id.tolist(), found.time.tolist(), strict=True)]
+    every: Array = reports.deviation[chosen][:, [0, 2, 1, 3]]
+    return every
 
 
 def _vector(found: Positions, row: int) -> Any:
