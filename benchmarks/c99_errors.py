@@ -56,7 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def infer_rows(name: str, number: str, inputs: int, compiler: str | None) -> list[list[str]]:
     """For each output the largest error of C over random inputs."""
-    made = export_c(name, number=number)
+    made = export_c(name, number=number, random=inputs)
     system, kind = FuzzySystem(name), number_type(number)
     evaluate = compiled(made, compiler)
     random = np.random.default_rng(20)

@@ -143,6 +143,20 @@ def test_break_points_that_integers_cannot_tell_apart_are_refused():
         export_c(narrow, number="q15", random=10)
 
 
+def test_numbers_that_are_too_large_for_floats_are_refused():
+    whole = partition_base(1)
+    first = whole.inputs[0]
+    small = tuple(
+        FuzzySet(s.name, s.shape, tuple(p * 1e-45 for p in s.parameters)) for s in first.sets
+    )
+    universe = type(first.universe)(-1e-45, 2e-45, 31)
+    inputs = (type(first)("a", universe, small),)
+    tiny = type(whole)("tiny", inputs, whole.outputs, whole.rules, whole.operators)
+    assert export_c(tiny, random=10).figures["errors"]["y"]["bound"] < 1e-14
+    with pytest.raises(ValueError, match="number: break points are too close, or outputs too larg"):
+        export_c(tiny, number="float", random=10)
+
+
 def test_no_rule_may_be_silent_with_integers():
     whole = partition_base()
     holes = type(whole)("holes", whole.inputs, whole.outputs, whole.rules[1:], whole.operators)

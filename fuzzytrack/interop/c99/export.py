@@ -213,12 +213,14 @@ def _tracker_export(
     called, prefix = _names(type(subject).__name__ if name is None else name)
     moving = filter_export(tracker, kind, name=f"{prefix}_filter", axes=axes)
     digest = hashlib.sha256(moving.translation.definitions.encode()).hexdigest()
+    # The default repr of a class ends with a place in memory.
+    words = re.sub(r" object at 0x[0-9a-f]+", "", repr(tracker))
     about = [
-        *about_file(called, repr(tracker)),
+        *about_file(called, words),
         ("Written from", f"its step; SHA-256 of the definitions below {digest}"),
         about_number(kind),
     ]
-    return _whole(called, prefix, kind, about, [], [], {"tracker": repr(tracker)}, moving)
+    return _whole(called, prefix, kind, about, [], [], {"tracker": words}, moving)
 
 
 def _whole(

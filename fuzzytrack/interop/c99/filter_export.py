@@ -91,6 +91,7 @@ class FilterExport:
             "Error bound",
             f"position {position:.1g} m, velocity {velocity:.1g} m/s: {how}",
         )
+        yield "ROM", f"{made.constants_bytes} bytes of constants, and the code"
         yield "RAM", f"{made.state_bytes} bytes a track; stack: {made.stack_bytes} bytes of numbers"
         yield "Operations", f"at most {operations_in_words(made.operations)} for a step"
 

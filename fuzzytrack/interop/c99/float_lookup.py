@@ -107,13 +107,21 @@ def float_lookup(table: GridTable, defaults: dict[str, float], dtype: Any) -> Fl
     defaults : dict of float
         For each output its default, or NaN.
     dtype : numpy.float64 or numpy.float32
+
+    Raises
+    ------
+    ValueError
+        If a number of the table is too large for the type.
     """
-    return FloatLookup(
-        tuple(_axis(nodes, dtype) for nodes in table.nodes),
-        {name: values.astype(dtype) for name, values in table.moments.items()},
-        {name: values.astype(dtype) for name, values in table.totals.items()},
-        {name: defaults[name] for name in table.totals},
-    )
+    with np.errstate(over="ignore"):
+        axes = tuple(_axis(nodes, dtype) for nodes in table.nodes)
+        moments = {name: values.astype(dtype) for name, values in table.moments.items()}
+    if not all(np.isfinite(v).all() for v in (*(a.rates for a in axes), *moments.values())):
+        raise ValueError(
+            "number: break points are too close, or outputs too large, for a float; use double"
+        )
+    totals = {name: values.astype(dtype) for name, values in table.totals.items()}
+    return FloatLookup(axes, moments, totals, {name: defaults[name] for name in totals})
 
 
 def _axis(nodes: Array, dtype: Any) -> FloatAxis:
