@@ -113,6 +113,7 @@ fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule
 	$(BIN)/python tests/fuzz_files.py --rows $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_scans.py --scans $(FUZZ_FILES)
 	$(BIN)/python tests/fuzz_studio.py --count $(FUZZ_FILES)
+	$(BIN)/python tests/fuzz_c99.py --count $(FUZZ_COUNT)
 	HYPOTHESIS_PROFILE=free $(BIN)/python -m pytest $(PYTEST_ARGS) -m hypothesis
 
 bench: $(VENV)/.installed-bench ## Measure speed on this machine against peers (BENCH_ARGS=--quick)
