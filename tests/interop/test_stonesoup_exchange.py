@@ -332,6 +332,11 @@ def test_settings_of_metrics_are_checked(name, value):
         stonesoup_metrics(*scene(1), **{name: value})
 
 
+def test_nothing_at_all_is_refused():
+    with pytest.raises(ValueError, match="tracks and truth: both are empty"):
+        stonesoup_metrics(set(), set(), families="ospa")
+
+
 def test_without_tracks_every_object_is_missed():
     _, truth = scene(1)
     found = stonesoup_metrics(set(), truth, cutoff=10.0)

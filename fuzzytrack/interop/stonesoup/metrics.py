@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
@@ -80,8 +79,9 @@ def stonesoup_metrics(
     ------
     TypeError, ValueError
         As for `to_stonesoup`; if a distance or the order is out of its range, there is no such
-        family, or positions have different numbers of axes; or, for SIAP, if a track or path lacks
-        a state between its first and its last one, or there is one instant only.
+        family, positions have different numbers of axes, or there is neither a track nor an object;
+        or, for SIAP, if a track or path lacks a state between its first and its last one, or there
+        is one instant only.
 
     Notes
     -----
@@ -90,23 +90,14 @@ def stonesoup_metrics(
     of distances rather than that of their powers. SIAP has other associations there: those of Stone
     Soup begin after three instants in a row.
     """
-    families = (families,) if isinstance(families, str) else families
+    chosen = _checked_families(families)
     # Their limits are those of the metrics of this package.
     Settings(cutoff=cutoff, order=order, match=match)
     mappings = {"position_mapping": position_mapping, "velocity_mapping": velocity_mapping}
-    sides = [
-        _given(each, name, epoch, mappings) for each, name in ((tracks, "tracks"), (truth, "truth"))
-    ]
-    n_axes = sides[0].n_axes
-    if sides[1].n_axes != n_axes:
-        raise ValueError(
-            f"tracks and truth: positions have {n_axes} and {sides[1].n_axes} axes; expected "
-            "equally many"
-        )
-    moving = all(side.velocity is not None for side in sides)
-    if not moving:
-        sides = [replace(side, velocity=None) for side in sides]
-    found, known = (to_stonesoup(side, epoch=epoch, truth=side is sides[1]) for side in sides)
+    found, known = _with_equal_axes(
+        _given(tracks, "tracks", epoch, mappings), _given(truth, "truth", epoch, mappings)
+    )
+    moving, n_axes = found.velocity is not None, found.n_axes
     places = 2 if moving else 1
     measure = Euclidean(mapping=list(range(0, places * n_axes, places)))
     speeds = Euclidean(mapping=list(range(1, 2 * n_axes, 2))) if moving else measure
@@ -115,24 +106,53 @@ def stonesoup_metrics(
         "gospa": GOSPAMetric(c=cutoff, p=order, measure=measure),
         "siap": SIAPMetrics(position_measure=measure, velocity_measure=speeds),
     }
-    for name in families:
-        if name not in generators:
-            raise ValueError(f"families: unknown {name!r}; some of {', '.join(FAMILIES)}")
-    if "siap" in families:
-        _check_whole(found, known)
     manager = MultiManager(
-        [generators[name] for name in families],
+        [generators[name] for name in chosen],
         TrackToTruth(association_threshold=match, measure=measure),
     )
-    manager.add_data({"tracks": found, "groundtruth_paths": known})
-    values = manager.generate_metrics()
-    numbers = {
-        name: _mean(*values[f"{name}_generator"].values()) for name in families if name != "siap"
+    paths = {
+        "tracks": to_stonesoup(found, epoch=epoch),
+        "groundtruth_paths": to_stonesoup(known, epoch=epoch, truth=True),
     }
+    if "siap" in chosen:
+        _check_whole(*paths.values())
+    manager.add_data(paths)
+    return _numbers(manager.generate_metrics(), moving)
+
+
+def _checked_families(families: str | Sequence[str]) -> tuple[str, ...]:
+    chosen = (families,) if isinstance(families, str) else tuple(families)
+    for name in chosen:
+        if name not in FAMILIES:
+            raise ValueError(f"families: unknown {name!r}; some of {', '.join(FAMILIES)}")
+    return chosen
+
+
+def _with_equal_axes(tracks: Positions, truth: Positions) -> tuple[Positions, Positions]:
+    """Both with velocities, or both without."""
+    if tracks.n_axes != truth.n_axes:
+        raise ValueError(
+            f"tracks and truth: positions have {tracks.n_axes} and {truth.n_axes} axes; expected "
+            "equally many"
+        )
+    if not len(tracks) and not len(truth):
+        raise ValueError("tracks and truth: both are empty; give at least one of the two")
+    if tracks.velocity is None or truth.velocity is None:
+        return replace(tracks, velocity=None), replace(truth, velocity=None)
+    return tracks, truth
+
+
+def _numbers(values: dict[str, dict[str, Any]], moving: bool) -> dict[str, float]:
+    """Numbers of what a manager of metrics returns, by their names here."""
+    found: dict[str, float] = {}
+    for name in ("ospa", "gospa"):
+        for metric in values.get(f"{name}_generator", {}).values():
+            found[name] = _mean(metric)
+    siap = values.get("siap_generator", {})
     for title, name in _SIAP.items():
-        if "siap" in families and (moving or name != "velocity_accuracy"):
-            numbers[name] = float(values["siap_generator"][title].value)
-    return numbers
+        if title in siap and (moving or name != "velocity_accuracy"):
+            found[name] = float(siap[title].value)
+    return found
 
 
 def _check_whole(tracks: set[Any], truth: set[Any]) -> None:
@@ -167,4 +187,4 @@ def _mean(metric: Any) -> float:
     values = metric.value
     each = [one.value for one in values] if isinstance(values, list) else [values]
     numbers = [one["distance"] if isinstance(one, dict) else one for one in each]
-    return float(np.mean(numbers)) if numbers else math.nan
+    return float(np.mean(numbers))
