@@ -27,7 +27,7 @@ __all__ = ["LINEAR", "MAX_PARAMETERS", "SHAPES", "TAILED", "FuzzySet", "Shape"]
 #: A linear function of the inputs, as the conclusion of a Takagi-Sugeno rule; it has no grades.
 LINEAR = "linear"
 #: Most parameters of a shape that takes any number of them.
-MAX_PARAMETERS = 1000
+MAX_PARAMETERS = 4000
 
 #: Shapes that are above zero everywhere, and far from their core too small for a float.
 TAILED = ("gaussmf", "gauss2mf", "gbellmf", "sigmf", "dsigmf", "psigmf", "spike")
@@ -213,7 +213,11 @@ def _bell_support(parameters: Parameters) -> tuple[float, float]:
 def _pairs_ascend(parameters: Parameters) -> bool:
     places, grades = parameters[::2], parameters[1::2]
     ascend = all(a < b and b - a > _STEEP for a, b in pairwise(places))
-    return ascend and all(0.0 <= g <= 1.0 for g in grades) and max(grades) > 0.0
+    return ascend and all(0.0 <= g <= 1.0 for g in grades)
+
+
+def _whole_places(parameters: Parameters) -> tuple[float, float]:
+    return parameters[0], parameters[-2]
 
 
 def _ramp_up(parameters: Parameters, x: str) -> str:
@@ -426,10 +430,10 @@ SHAPES: dict[str, Shape] = _Shapes(
         ),
         "discrete": Shape(
             ("x1", "y1", "x2", "y2"),
-            "pairs x y with x ascending and y from 0 to 1, not all 0",
+            "pairs x y with x ascending and y from 0 to 1",
             _pairs_ascend,
             more_shapes.discrete_core,
-            more_shapes.discrete_support,
+            _whole_places,
             lambda p: p[::2],
             more_shapes.discrete,
             more_shapes.discrete_values,

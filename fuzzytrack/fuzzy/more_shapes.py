@@ -16,7 +16,7 @@ from fuzzytrack.fuzzy.stretches import Stretch
 
 __all__ = [
     "concave", "concave_values", "cosine", "cosine_values", "discrete", "discrete_core",
-    "discrete_ones", "discrete_positive", "discrete_support", "discrete_values", "ellipse",
+    "discrete_ones", "discrete_positive", "discrete_values", "ellipse",
     "ellipse_values",
     "quarter_circle", "quarter_circle_values", "sigmoid_difference", "sigmoid_difference_values",
     "sigmoid_peak", "sigmoid_product", "sigmoid_product_values", "spike", "spike_values",
@@ -135,12 +135,6 @@ def discrete_core(parameters: Parameters) -> tuple[float, float]:
     if (low, high) == (-math.inf, math.inf):
         return places[0], places[-1]
     return low, high
-
-
-def discrete_support(parameters: Parameters) -> tuple[float, float]:
-    """Ends of the smallest interval with all points where the grade is above zero."""
-    positive = discrete_positive(parameters)
-    return positive[0].low, positive[-1].high
 
 
 def discrete_positive(parameters: Parameters) -> tuple[Stretch, ...]:

@@ -211,6 +211,15 @@ def test_hedges_change_grades_support_and_expression_alike(shape, parameters, wo
         np.testing.assert_array_equal((grades > 0)[exact], np.array(inside)[exact])
 
 
+def test_a_set_of_points_may_be_zero_everywhere():
+    empty = FuzzySet("s", "discrete", (0, 0, 1, 0))
+    assert empty.positive() == ()
+    assert empty.support()[0] == math.inf
+    assert not empty.membership(X).any()
+    (whole,) = FuzzySet("s", "not discrete", (0, 0, 1, 0)).positive()
+    assert (whole.low, whole.high) == (-math.inf, math.inf)
+
+
 @pytest.mark.parametrize("shape", ["nearly trimf", "not", "trimf not", "not not very any trimf",
                                    "not linear", "not  trimf"])  # fmt: skip
 def test_words_that_are_no_hedges_are_refused(shape):
@@ -331,7 +340,6 @@ def fuzzy_sets(draw):
     elif shape == "discrete":
         places = draw(st.lists(st.integers(-(10**9), 10**9), min_size=2, max_size=9, unique=True))
         grades = draw(st.lists(st.floats(0, 1), min_size=len(places), max_size=len(places)))
-        grades[0] = max(grades[0], 0.25)
         scale = draw(st.sampled_from([1e-290, 1e-9, 1.0, 1e90]))
         places = [scale * place for place in sorted(places)]
         parameters = [x for pair in zip(places, grades, strict=True) for x in pair]
