@@ -9,6 +9,10 @@ from test_documentation import ROOT, WALK, blocks
 from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
+from fuzzytrack.errors import RuleBaseError
+from fuzzytrack.fuzzy.formats.conversion import translated
+from fuzzytrack.fuzzy.formats.fis_reader import loads_fis
+from fuzzytrack.fuzzy.loading import load_rulebase
 
 
 @pytest.fixture
@@ -82,3 +86,25 @@ def test_the_guide_from_plots_to_tracks(run):
         assert [line for line in expected if line.split() not in printed] == []
     assert Path("tracks.csv").read_text().startswith("t,track_id,x,y,")
     assert Path("tracks.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_guide_of_other_programs(run):
+    page = ROOT / "docs" / "other-programs.md"
+    (file,) = (text for text in blocks(page, "text") if text.startswith("[System]"))
+    Path("heater.fis").write_text(file, encoding="utf-8")
+    commands = list(WALK["commands"](page.read_text()))
+    assert len(commands) == 4
+    for words, expected in commands:
+        printed = run(words)
+        assert [line for line in expected if line.split() not in printed] == [], words
+    notes = [text for text in blocks(page, "text") if text.startswith("note: ")]
+    rules = load_rulebase("heater.yaml")
+    assert [f"note: {note}\n" for note in translated(rules, "x.fll").notes] == notes
+    (refused,) = (text for text in blocks(page, "text") if text.startswith("heater.fis:3"))
+    with pytest.raises(RuleBaseError) as error:
+        loads_fis(file.replace("'mamdani'", "'mamdanitype2'"), "heater.fis")
+    assert f"{error.value}\n" == refused
+    names = {}
+    (code,) = blocks(page, "python")
+    exec(compile(code, str(page), "exec"), names)
+    assert f"# {names['opening']:.2f}\n" in code

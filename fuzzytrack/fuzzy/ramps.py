@@ -74,16 +74,8 @@ class Ramps:
 
 def find_ramps(rules: RuleBase) -> Ramps | None:
     """Ramps of a rule base, or None if it cannot be written with them."""
-    if rules.operators.conjunction != "product" or any(rule.alternatives for rule in rules.rules):
+    if not rules.adds_products:
         return None
-    for output in rules.outputs:
-        operators = rules.operators_of(output)
-        if not operators.is_classical or operators.conjunction != "product" or output.is_linear:
-            return None
-        if operators.disjunction != "sum":
-            return None
-        if operators.defuzzification not in ("centroid", "weighted-centers"):
-            return None
     orders = [_order(variable) for variable in rules.inputs]
     cells = {}
     for output in rules.outputs:

@@ -328,6 +328,22 @@ class RuleBase:
         """Operators by which the rules conclude about an output."""
         return self.operators if output.operators is None else output.operators
 
+    @property
+    def adds_products(self) -> bool:
+        """Whether every output is a quotient of two sums over the rules of products of grades.
+
+        So it is with product and sum, centroid or weighted centers, no alternatives in a rule and
+        no linear sets.
+        """
+        return not any(rule.alternatives for rule in self.rules) and all(
+            operators.is_classical
+            and (operators.conjunction, operators.disjunction) == ("product", "sum")
+            and operators.defuzzification in ("centroid", "weighted-centers")
+            and not output.is_linear
+            for output in self.outputs
+            for operators in (self.operators, self.operators_of(output))
+        )
+
     def algebra(self) -> Iterator[str]:
         """Operators in words, and after them those of each output that has its own."""
         yield _in_words(self.operators)

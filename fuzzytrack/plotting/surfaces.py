@@ -372,8 +372,9 @@ def plot_relation(
     matrix = system.relation(name)
 
     figure, grid = shared.panels("axes", axes, 1 if at is None else 2, columns=2, size=(4.8, 4.0))
-    y, _ = output_grid(base.operators, target)
-    by_set = base.operators.defuzzification == "weighted-centers"
+    operators = base.operators_of(target)
+    y, _ = output_grid(operators, target)
+    by_set = operators.defuzzification == "weighted-centers"
     _image(grid[0], figure, matrix, variable, target, None if by_set else y)
     if at is not None:
         column = int(universe.nearest(np.asarray(at)))

@@ -3,6 +3,7 @@
 import math
 import random
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -252,3 +253,15 @@ def test_the_table_is_near_the_exact_values():
     points = np.random.default_rng(1).uniform(0, 1, (50, 2))
     gap = np.abs(table.evaluate(points)["y"] - ft.FuzzySystem(rules).evaluate(points)["y"])
     assert gap.max() <= table.table_bounds["y"]
+
+
+def test_what_adds_products():
+    assert ft.load_rulebase("stiffness-damping").adds_products
+    assert not ft.load_rulebase("tipper").adds_products
+    base = ft.load_rulebase("chan-style")
+    assert base.adds_products
+    first = base.rules[0]
+    other = Rule(first.conditions, first.consequents, (base.rules[-1].conditions,))
+    assert not replace(base, rules=(other, *base.rules[1:]), layout=None).adds_products
+    own = replace(base.outputs[0], operators=replace(base.operators, disjunction="max"))
+    assert not replace(base, outputs=(own, *base.outputs[1:])).adds_products

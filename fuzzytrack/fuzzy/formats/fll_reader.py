@@ -26,7 +26,7 @@ __all__ = ["DEFAULT_RESOLUTION", "loads_fll"]
 #: Points of a defuzzifier that names none, as fuzzylite 7 and later take them.
 DEFAULT_RESOLUTION = 1000
 
-_LINE = re.compile(r"\s*([A-Za-z][A-Za-z-]*)\s*:\s*(.*?)\s*")
+_LINE = re.compile(r"([A-Za-z][A-Za-z-]*)\s*:\s*(.*)")
 _KEYS = {
     "Engine": ("description",),
     "InputVariable": ("description", "enabled", "range", "lock-range", "term"),
@@ -119,15 +119,15 @@ class _FllReader:
     # ---------------------------------------------------------------- lines
 
     def _line(self, number: int, line: str) -> None:
-        if not line.strip():
+        text = line.strip()
+        if not text:
             return
-        found = _LINE.fullmatch(line)
+        start = len(line) - len(line.lstrip()) + 1
+        found = _LINE.fullmatch(text)
         if found is None:
-            raise self.source.error(
-                number, 1, f"{quoted(line.strip())} is not written as key: value"
-            )
+            raise self.source.error(number, start, f"{quoted(text)} is not written as key: value")
         key, text = found.groups()
-        place = self.source.place(number, found.start(1) + 1)
+        place = self.source.place(number, start)
         if key in _KEYS:
             self.blocks.append(_Block(key, text, place))
             return
@@ -141,7 +141,7 @@ class _FllReader:
                 f"{', '.join(allowed)}",
                 place,
             )
-        value = _Value(text, number, found.start(2) + 1)
+        value = _Value(text, number, start + found.start(2))
         if key in _REPEATED:
             block.repeated.append(value)
         elif key in block.values:

@@ -129,10 +129,10 @@ def formulas(system: FuzzySystem, number: NumberType) -> Formulas:
     ValueError
         If it cannot be written as formulas.
     """
-    operators = system.rules.operators
-    if operators.defuzzification not in ("centroid", "weighted-centers"):
-        raise ValueError(
-            f"table: {system.rules.name} has defuzzification {operators.defuzzification}, for "
-            "which there are no formulas; write a table"
-        )
+    for operators in map(system.rules.operators_of, system.rules.outputs):
+        if operators.defuzzification not in ("centroid", "weighted-centers"):
+            raise ValueError(
+                f"table: {system.rules.name} has defuzzification {operators.defuzzification}, for "
+                "which there are no formulas; write a table"
+            )
     return Formulas(system.rules, number, infer_function(system))

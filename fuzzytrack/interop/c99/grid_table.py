@@ -68,13 +68,10 @@ def breakpoint_table(rules: RuleBase) -> GridTable | None:
     Returns
     -------
     GridTable or None
-        None if no table is exact: for other operators than product and sum, sets that are not
+        None if no table is exact: for rule bases that do not add products, sets that are not
         straight between their corners or jump, or more than 65,536 nodes.
     """
-    operators = rules.operators
-    if (operators.conjunction, operators.disjunction) != ("product", "sum"):
-        return None
-    if operators.defuzzification not in ("centroid", "weighted-centers"):
+    if not rules.adds_products:
         return None
     nodes = []
     for variable in rules.inputs:
