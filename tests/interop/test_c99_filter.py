@@ -1,6 +1,8 @@
 """Trackers written in C and compiled give what the library gives."""
 
+import importlib
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,14 +18,13 @@ try:
 except CompilerError as error:
     pytest.skip(str(error), allow_module_level=True)
 
-pytestmark = [
-    pytest.mark.untraced, pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning"),
-]  # fmt: skip
+pytestmark = pytest.mark.filterwarnings("ignore::fuzzytrack.TrackWarning")
 
 STRICT = (
     "-O1", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wsign-conversion", "-Wshadow",
     "-Werror",
 )  # fmt: skip
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "plugin"
 VECTORS = ("filtered", "velocity", "acceleration", "predicted", "innovation")
 #: Every tracker in another mode, and on another number of axes, to keep the number of builds small.
 MODES = [
@@ -67,6 +68,7 @@ def largest_difference(run, reference):
     return found
 
 
+@pytest.mark.untraced
 @pytest.mark.parametrize(("k", "name"), list(enumerate([*SCHEDULERS, *TRACKERS])))
 def test_a_tracker_gives_the_same_numbers(k, name):
     tracker, axes = tracker_of(name, k), 1 + k % 3
@@ -79,6 +81,7 @@ def test_a_tracker_gives_the_same_numbers(k, name):
     assert compiled.start().shape[1] == compiled.translation.state_bytes
 
 
+@pytest.mark.untraced
 def test_ten_thousand_plots_stay_the_same():
     tracker = ft.AlphaBetaTracker("stiffness-damping")
     t, z, sigma = plots(2, 10_000, False)
@@ -140,6 +143,15 @@ def test_misses_need_no_standard_deviation_and_tracks_may_have_no_plot(maneuver)
     run = maneuver.run([0.0, 1.0], np.full((2, 2), np.nan), np.nan)
     assert np.isnan(run.filtered).all()
     assert maneuver.run([], np.empty((0, 2)), 1.0).filtered.shape == (0, 2)
+
+
+def test_plug_ins_are_exported(monkeypatch):
+    monkeypatch.syspath_prepend(EXAMPLES)
+    plugin = importlib.import_module("fuzzytrack_two_speed")
+    for tracker in (ft.AlphaBetaTracker(plugin.TwoSpeed()), plugin.Averaged()):
+        t, z, sigma = plots(2, 200, False)
+        run = compiled_c(tracker, axes=2, flags=STRICT).run(t, z, sigma)
+        assert largest_difference(run, tracker.run(t, z, sigma)) == 0.0
 
 
 def test_wrong_shapes_are_refused(maneuver):

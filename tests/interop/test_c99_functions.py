@@ -17,6 +17,7 @@ from fuzzytrack.interop.c99.build import CompilerError, built, find_compiler
 from fuzzytrack.interop.c99.compiled import compiled_functions, whole_source
 from fuzzytrack.interop.c99.python_source import TranslationError
 from fuzzytrack.interop.c99.translation import translated, translated_kernel
+from fuzzytrack.kernels import language
 
 try:
     find_compiler()
@@ -234,6 +235,115 @@ def test_operations_are_counted_at_most():
     }  # fmt: skip
 
 
+# ---------------------------------------------------------------- parts of the language
+
+LANGUAGE = {
+    "chains": "return 1.0 if 0.0 < x <= y < 9.0 else (x == x == y) + 0.5",
+    "values of and, or": "return (x and y) + (x or 2.0) + (0.0 or y) + (x and 0.0 and y)",
+    "parts that are known": "return (x if K == 3 and not None else 1.0) + (y if K > 4 or T else x)",
+    "statements on integers": "n = K\n    n += int(x)\n    n *= 2\n"
+    "    return float(n % 7 - n // -3)",
+    "an integer that becomes a number": "z = 1\n    if x > y:\n        z = x\n    return z * 2.0",
+    "names in turn": "a, b = x, y\n    a, b = b, a\n    (a, b), c = (b, a), a - b\n"
+    "    return a * c",
+    "the rest of a tuple": "first, *rest, last = (x, y, 1.0, 2.0, x)\n"
+    "    return first * rest[0] + rest[-1] - last + len(rest)",
+    "parts of tuples": "t = (x, y, 3.0) + T[1:] * 2\n    return t[::2][1] + sum(t[-3:]) + max(t)",
+    "a loop over a tuple": "total = 0.0\n    for part in (x, 1.0, y):\n        total -= part\n"
+    "    return total",
+    "a loop that is left": "total = 0.0\n    for k in range(9, -4, -2):\n        if k < x:\n"
+    "            break\n        if k == 5:\n            continue\n        total += k\n"
+    "    return total",
+    "a return in a loop": "for k in range(1, 6):\n        if k * x > y:\n"
+    "            return float(k)\n"
+    "    return -1.0",
+    "loops in loops": "n = 0\n    for j in range(3):\n        for k in range(2, 5):\n"
+    "            n += j * k\n"
+    "    return n + x",
+    "an integer that grows": "n = 1\n    for k in range(70):\n        n = n * 2 % 1000003\n"
+    "    return n + x",
+    "truth values": "a, b = x > 0.0, y > 0.0\n    return (a & b) + 2.0 * (a | b) + 4.0 * (a ^ b)"
+    " + 8.0 * (a and not b) + 16.0 * (a & (T[0] > 0.0)) + 32.0 * (False | b)",
+    "kinds of numbers": "return math.isnan(x) + 2.0 * math.isinf(y) + 4.0 * math.isfinite(x + y)",
+    "rounding": "return float(round(x)) + 10.0 * round(y) + math.ceil(x) - math.floor(y)",
+    "powers": "return x**2 + y**3 + (x * x) ** 1 + int(y) ** 2 + K**2",
+    "arrays": "return A[int(min(max(x, 0.0), 1.0)), 1] + A[1, int(y) % 2] + A[0, 0]"
+    " + I[int(y) % 2]",
+    "places in memory of its own": "b = own_numbers(3)\n    for k in range(3):\n"
+    "        b[k] = k * x\n    b[-1] += y\n    fill(b, x)\n    z = filled(b, y)\n"
+    "    return b[0] + b[1] + b[int(abs(y)) % 3] + z + len(b)",
+    "any number of arguments": "return several(x) + several(x, y) + several(*T, x, scale=2.0)",
+    "a function that is given": "return applied(half, x) + applied(lambda_, y)",
+    "words without effect": "use_wide_vectors()\n    'a text'\n    pass\n    z: float = x\n"
+    "    promise_independent_turns()\n    return z",
+    "pieces of None": "z = None\n    return x if z is None else y",
+    "branches of tuples": "t = (x, (y, 1.0)) if x > y else (y, (x, several(x, y)))\n"
+    "    return t[0] - t[1][0] + t[1][1]",
+    "branches of integers": "n = int(x) if x > y else K\n    return float(n) if n else -1.0",
+    "min and max of integers": "n, m = int(x), int(y)\n"
+    "    return float(min(n, m, 4) + max(n, K) + abs(n) + bool(m) + min(K, 7))",
+}
+AROUND = """
+def fill(b, x):
+    b[0] = x
+    return
+
+
+def filled(b, y):
+    b[1] = b[1] - y
+    return b[1] * 2.0
+
+
+def several(first, *rest, scale=1.0):
+    total = first
+    for part in rest:
+        total = total + part
+    return total * scale
+
+
+def half(x):
+    return 0.5 * x
+
+
+lambda_ = lambda x: -x
+
+
+def applied(function, x):
+    return function(x)
+"""
+
+
+def in_language(body):
+    text = AROUND + f"\n\ndef f(x, y):\n    {body}\n"
+    scope = {
+        "math": math, "K": 3, "T": (2.5, -1.0, 0.25), "A": np.array([[1.5, 2.0], [-3.0, 4.0]]),
+        "I": np.array([3, 5]), "own_numbers": language.own_numbers,
+        "use_wide_vectors": language.use_wide_vectors,
+        "promise_independent_turns": language.promise_independent_turns,
+    }  # fmt: skip
+    exec(compile(text, "<test>", "exec"), scope)
+    for name in ("f", "fill", "filled", "several", "half", "lambda_", "applied"):
+        vars(scope[name])["source"] = text
+    return scope["f"]
+
+
+@pytest.fixture(scope="module")
+def language_in_c():
+    translations = [
+        translated(in_language(body), name=f"part{k}") for k, body in enumerate(LANGUAGE.values())
+    ]
+    return dict(zip(LANGUAGE, compiled_functions(translations, flags=STRICT), strict=True))
+
+
+@pytest.mark.parametrize("part", LANGUAGE)
+def test_parts_of_the_language(language_in_c, part):
+    function = in_language(LANGUAGE[part])
+    values = [-3.5, -2.0, -0.5, 0.0, 0.5, 1.0, 2.5, 4.0]
+    pairs = [(x, y) for x in values for y in values]
+    expected = [float(function(x, y)) for x, y in pairs]
+    np.testing.assert_array_equal(language_in_c[part](pairs)[:, 0], expected)
+
+
 # ---------------------------------------------------------------- what is refused
 
 REFUSED = {
@@ -264,6 +374,27 @@ REFUSED = {
     "return abs(x, x)": "with 2 arguments",
     "return x is x": "`is`",
     "raise ValueError": "`raise`",
+    "x.real = 1.0\n    return x": "changes an attribute",
+    "x[0] = 1.0\n    return x": "changes a part of a number",
+    "for a, b in ((x, x),):\n        pass\n    return x": "more than one value in a loop",
+    "for k in range(3):\n        pass\n    else:\n        pass\n    return x": "`else` of a loop",
+    "for k in range(3):\n        k = 1\n    return x": "changes 'k' in its loop",
+    "y = x\n    if x > 0.0:\n        y = (x, x)\n    return x": "which is something else",
+    "if x > 0.0:\n        return (x, x)\n    return x": "elsewhere something else",
+    "return x + y\n    y = 1.0": "'y' before it has a value",
+    "return x(1.0)": "calls a number",
+    "return math.sqrt(x=x)": "an argument by its name",
+    "return max(**x)": "arguments by",
+    "return (1.0, x)[int(x):][0]": "ends are not constants",
+    "return (True, x)[int(x)]": "of a tuple of other things",
+    "return ()[int(x)]": "a place of an empty tuple",
+    "return (x, x) - (x, x)": "- of a tuple",
+    "return int(x) ** -1": "an integer to the power of -1",
+    "return x & x": "not both truth values",
+    "return x if (x, x) < (x, x) else x": "where a number is needed",
+    "return 1.0 + 'a'": "of constants",
+    "return float(2**70) + x + 2**70": "at most 62 bits|62 bits",
+    "x + 1.0\n    return x": "without effect",
     "return (lambda y: y)(x)": "a function inside of it",
     "for k in range(3):\n        pass\n    return float(k)": "after its loop",
 }
@@ -296,6 +427,9 @@ def test_names_and_types_are_checked():
         translated(function, name="2x")
     with pytest.raises(ValueError, match="number: unknown 'half'"):
         translated(function, name="f", number="half")
+    named = written("def f(x, *, y):\n    return x\n")
+    with pytest.raises(TranslationError, match="other arguments than those by position"):
+        translated(named, name="f")
     with pytest.raises(ValueError, match="arguments: 2 for a function that takes 1"):
         translated(function, name="f", arguments=("number", "number"))
     tiny = written("def f(x):\n    return x * 1e-200\n")

@@ -85,9 +85,6 @@ class FunctionWriter(CallWriter):
 
     def written(self) -> Written:
         """The function in C."""
-        arguments = self.definition.node.args
-        if arguments.kwonlyargs or arguments.kwarg:
-            self.refuse(self.definition.node, "takes arguments by their names only")
         while True:
             try:
                 return self._write()
@@ -104,6 +101,7 @@ class FunctionWriter(CallWriter):
         names = [each.arg for each in self.definition.parameters]
         if self.definition.node.args.vararg:
             names.append(self.definition.node.args.vararg.arg)
+        names += [each.arg for each in self.definition.node.args.kwonlyargs]
         self.local = {*names, *self.stores}
         parameters: list[tuple[str, str]] = []
         for name, form in zip(names, self.forms, strict=True):

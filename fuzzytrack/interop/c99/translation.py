@@ -123,6 +123,9 @@ def translated(
         raise TypeError(f"function must be a plain function, got {type(function).__name__}")
     definition = definition_of(plain)
     names = [each.arg for each in definition.parameters]
+    given_otherwise = definition.node.args
+    if given_otherwise.vararg or given_otherwise.kwonlyargs or given_otherwise.kwarg:
+        definition.refuse(definition.node, "takes other arguments than those by position")
     forms = tuple(arguments) if arguments is not None else (NUMBER,) * len(names)
     if len(forms) != len(names):
         raise ValueError(f"arguments: {len(forms)} for a function that takes {len(names)}")
