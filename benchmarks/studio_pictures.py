@@ -7,7 +7,7 @@ given. It needs what `benchmarks.studio` needs.
 from __future__ import annotations
 
 import re
-import sys
+from argparse import ArgumentParser
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -150,4 +150,6 @@ VIEWS = {
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else IMAGES)
+    parser = ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", default=IMAGES)
+    main(parser.parse_args().folder)
