@@ -204,7 +204,7 @@ def _values(parameter: Any, word: str) -> list[Candidate]:
 
 def _words_of(metavar: str | None) -> list[str]:
     """Words out of which one is chosen, as `auto` and `none` in `K|auto|none`."""
-    return [word for word in (metavar or "").split("|") if re.fullmatch("[a-z][a-z-]*", word)]
+    return [word for word in (metavar or "").split("|") if re.fullmatch("[a-z][a-z0-9-]*", word)]
 
 
 def _trackers() -> Sequence[str]:

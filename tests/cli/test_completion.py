@@ -65,6 +65,7 @@ def test_options_are_completed_but_those_that_were_given():
         (("reproduce", ""), [*PAPERS, "all"]),
         (("sample", ""), list(SAMPLES)),
         (("completion", ""), ["bash", "zsh", "fish"]),
+        (("rulebase", "export", "valve", "--number", ""), ["double", "float", "q15"]),
         (("track", "--tracker", "kalman-c"), ["kalman-ca", "kalman-cv"]),
         (("track", "--tracker=imm-th"), ["--tracker=imm-three"]),
         (("compare", "a", "--trackers", "fixed,tip"), []),

@@ -146,6 +146,15 @@ def test_the_same_rule_base_gives_the_same_bytes(tmp_path):
     assert export_c(copy, number="float", random=500).files == one.files
 
 
+def test_files_of_other_programs_are_exported(tmp_path):
+    file = tmp_path / "mine.fis"
+    convert = ["rulebase", "convert", "tipper", str(file)]
+    assert CliRunner().invoke(app, convert).exit_code == 0
+    made = export_c(file, random=100)
+    assert list(made.files) == ["mine.h", "mine_selftest.c"]
+    assert "mine.fis, SHA-256" in made.header
+
+
 def test_a_rule_base_that_was_made_in_python():
     rules = ft.load_rulebase("valve")
     made = export_c(rules, random=100, name="my valve")

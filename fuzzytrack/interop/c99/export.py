@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from fuzzytrack.fuzzy.as_json import rulebase_as_json
-from fuzzytrack.fuzzy.loading import as_rulebase, rulebase_path
+from fuzzytrack.fuzzy.loading import as_rulebase, rulebase_path, shipped_rulebases
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.interop.c99.c_program import CProgram
@@ -281,7 +281,7 @@ def _source(rules: RuleBase | str | os.PathLike[str]) -> tuple[str, RuleBase, st
         digest = hashlib.sha256(text).hexdigest()
         return f"{rules.name} as JSON, SHA-256 {digest}", rules, rules.name
     loaded = as_rulebase(rules)
-    path = rulebase_path(rules)
+    path = rulebase_path(rules) if rules in shipped_rulebases() else Path(rules)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     return f"{path.name}, SHA-256 {digest}", loaded, path.stem
 
