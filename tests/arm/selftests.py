@@ -7,6 +7,7 @@ gcc-arm-none-eabi, libnewlib-arm-none-eabi, qemu-system-arm). Exit status 1 if a
 from __future__ import annotations
 
 import argparse
+import re
 import shutil
 import subprocess
 import sys
@@ -14,11 +15,17 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
 from fuzzytrack.cli.text_table import table_lines
 from fuzzytrack.fuzzy.loading import load_rulebase, shipped_rulebases
 from fuzzytrack.interop.c99.export import CExport, export_c
-from fuzzytrack.interop.c99.number_types import NUMBERS
+from fuzzytrack.interop.c99.number_types import NUMBERS, number_type
+from fuzzytrack.interop.c99.selftest import constant_rows
 
+#: Calls that are timed together, inputs that are tried, and instructions in a tick of the clock of
+#: the board: qemu counts one for a nanosecond, and the clock has 25 MHz.
+CALLS, INPUTS, TICK = 400, 64, 40
 #: How the line of a self-test ends that has passed.
 RIGHT = "values are right"
 HERE = Path(__file__).resolve().parent
@@ -32,7 +39,9 @@ BOARD = (
     "-semihosting-config", "enable=on,target=native", "-kernel",
 )  # fmt: skip
 FILTER_COLUMNS = ("filter", "number", "track", "code and data", "stack", "self-test")
-COLUMNS = ("rule base", "number", "method", "data", "code and data", "stack", "error", "self-test")
+COLUMNS = ("rule base", "number", "method", "data", "code and data", "stack",
+    "instructions", "error", "self-test",
+)  # fmt: skip
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -55,7 +64,7 @@ def main(arguments: list[str] | None = None) -> int:
                 filters.append(filter_row(export_c(name, number=number, filter=True, random=1_000)))
                 print(f"{name} {number} filter: {filters[-1][-1]}", file=sys.stderr)
     for columns, table, words in ((COLUMNS, rows, 3), (FILTER_COLUMNS, filters, 2)):
-        print("\n".join(table_lines(list(columns), table, 120, words)) + "\n")
+        print("\n".join(table_lines(list(columns), table, 140, words)) + "\n")
     if given.output:
         parts = (markdown(COLUMNS, rows, 3), markdown(FILTER_COLUMNS, filters, 2))
         given.output.write_text("\n".join(parts), encoding="utf-8")
@@ -67,8 +76,10 @@ def infer_row(made: CExport) -> list[str]:
     with TemporaryDirectory() as folder:
         says = selftest(made, Path(folder))
         code, stack = sizes(made, Path(folder), infer_entry(made))
-    method, data = made.figures["method"], str(made.figures["rom_bytes"])
-    return [made.name, made.number, method, data, str(code), str(stack), error(made), says]
+        most = instructions(made, Path(folder))
+    figures = [made.figures["rom_bytes"], code, stack, most]
+    words = [made.name, made.number, made.figures["method"]]
+    return [*words, *map(str, figures), error(made), says]
 
 
 def filter_row(made: CExport) -> list[str]:
@@ -90,24 +101,78 @@ def markdown(columns: Sequence[str], rows: list[list[str]], words: int) -> str:
 def selftest(made: CExport, folder: Path) -> str:
     """What the self-test says of its values under qemu."""
     made.write(folder)
-    program = folder / "selftest.elf"
-    link = (
-        "-nostartfiles", "-T", str(HERE / "board.ld"), "--specs=rdimon.specs",
-        "-Wl,--no-warn-rwx-segments",
-    )  # fmt: skip
-    sources = (str(HERE / "startup.c"), f"{made.name}_selftest.c")
-    subprocess.run(
-        ["arm-none-eabi-gcc", *CORE, *WARNINGS, "-O2", *sources, *link, "-o", program],
-        cwd=folder, check=True,
-    )  # fmt: skip
+    linked(folder, f"{made.name}_selftest.c", "selftest.elf")
+    board = [*BOARD, folder / "selftest.elf"]
     try:
-        done = subprocess.run(
-            [*BOARD, program], capture_output=True, text=True, timeout=60, check=False
-        )
+        done = subprocess.run(board, capture_output=True, text=True, timeout=60, check=False)
     except subprocess.TimeoutExpired:
         return "hangs"
     says = done.stdout.strip().partition(": ")[2]
     return says if done.returncode == 0 else f"{says or 'nothing'}, exit status {done.returncode}"
+
+
+def linked(folder: Path, source: str, program: str) -> None:
+    """Compile a program for the board."""
+    link = (
+        "-nostartfiles", "-T", str(HERE / "board.ld"), "--specs=rdimon.specs",
+        "-Wl,--no-warn-rwx-segments",
+    )  # fmt: skip
+    sources = (str(HERE / "startup.c"), source)
+    subprocess.run(
+        ["arm-none-eabi-gcc", *CORE, *WARNINGS, "-O2", *sources, *link, "-o", program],
+        cwd=folder, check=True,
+    )  # fmt: skip
+
+
+def instructions(made: CExport, folder: Path) -> int:
+    """Most instructions of a call, over some random inputs, without those of the loop around it."""
+    inputs = load_rulebase(made.name).inputs
+    kind, random = number_type(made.number), np.random.default_rng(4)
+    rows = np.stack([kind.random(v.universe, INPUTS, random) for v in inputs], axis=1)
+    given = ", ".join(f"given[row][{k}]" for k in range(len(inputs)))
+    outputs = re.search(r"{([^}]*)} \w+_outputs;", made.header)[1]
+    members = re.findall(r"\w+ (\w+);", outputs)
+    lines = [
+        f'#include "{made.name}.h"',
+        "#include <stdio.h>",
+        *constant_rows(f"volatile {kind.c_type}", "given", rows),
+        f"static volatile {kind.c_type} sink[{max(len(members), len(inputs))}];",
+        "static uint32_t timed(uint32_t row, int works)",
+        "{",
+        "    volatile uint32_t *const clock = (volatile uint32_t *)0xE000E010U;",
+        "    uint32_t start;",
+        "    uint32_t k;",
+        "    clock[1] = 0xFFFFFFU;",
+        "    clock[2] = 0U;",
+        "    clock[0] = 5U;",
+        "    start = clock[2];",
+        f"    for (k = 0U; k < {CALLS}U; k++) {{",
+        "        if (works != 0) {",
+        f"            const {made.prefix}_outputs y = {made.prefix}_infer({given});",
+        *(f"            sink[{k}] = y.{member};" for k, member in enumerate(members)),
+        "        } else {",
+        *(f"            sink[{k}] = given[row][{k}];" for k in range(len(inputs))),
+        "        }",
+        "    }",
+        "    return (start - clock[2]) & 0xFFFFFFU;",
+        "}",
+        "int main(void)",
+        "{",
+        "    uint32_t most = 0U;",
+        "    uint32_t row;",
+        f"    for (row = 0U; row < {INPUTS}U; row++) {{",
+        "        const uint32_t spent = timed(row, 1) - timed(row, 0);",
+        "        most = (spent > most) ? spent : most;",
+        "    }",
+        '    (void)printf("%u\\n", (unsigned int)most);',
+        "    return 0;",
+        "}",
+    ]
+    (folder / "count.c").write_text("\n".join(lines) + "\n")
+    linked(folder, "count.c", "count.elf")
+    board = [*BOARD[:-1], "-icount", "shift=0", "-kernel", folder / "count.elf"]
+    done = subprocess.run(board, capture_output=True, text=True, timeout=60, check=True)
+    return round(int(done.stdout) * TICK / CALLS)
 
 
 def infer_entry(made: CExport) -> str:
