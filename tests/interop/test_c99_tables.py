@@ -97,6 +97,33 @@ def test_jumps_and_curves_have_no_exact_table(shape, parameters):
     assert breakpoint_table(changed(rules, sets)) is None
 
 
+def test_other_algebras_and_tables_that_are_too_large_are_not_exact():
+    rules = partition_base(1)
+    for words in (("min", "sum", "centroid"), ("product", "sum", "mom")):
+        operators = type(rules.operators)(*words)
+        other = type(rules)("other", rules.inputs, rules.outputs, rules.rules, operators)
+        assert breakpoint_table(other) is None
+    sets = tuple(FuzzySet(f"s{k}", "trimf", (k - 1, k, k + 1)) for k in range(300))
+    first = rules.inputs[0]
+    universe = type(first.universe)(0, 299, 300)
+    inputs = tuple(type(first)(name, universe, sets) for name in "ab")
+    rule = type(rules.rules[0])((("a", "s1"),), rules.rules[0].consequents)
+    large = type(rules)("large", inputs, rules.outputs, (rule,), rules.operators)
+    assert breakpoint_table(large) is None
+
+
+def test_a_table_has_no_gaps():
+    rules = partition_base(1)
+    sets = list(rules.inputs[0].sets)
+    sets[2] = FuzzySet("s2", "gaussmf", (0.1, 0.3))
+    whole = changed(rules, sets)
+    gaps = type(whole)("gaps", whole.inputs, whole.outputs, whole.rules[:1], whole.operators)
+    with pytest.raises(
+        RuleBaseError, match=r"gaps: no rule about y fires at a=-0\.3.*gaps"
+    ):
+        export_c(gaps, number="q15", random=10)
+
+
 def test_flat_ends_are_left_out_of_a_table():
     table = breakpoint_table(ft.load_rulebase("stiffness-damping"))
     assert [nodes.tolist() for nodes in table.nodes] == [[-0.6, -0.3, -0.1, 0, 0.1, 0.3, 0.6]] * 2
