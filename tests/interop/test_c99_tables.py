@@ -118,9 +118,7 @@ def test_a_table_has_no_gaps():
     sets[2] = FuzzySet("s2", "gaussmf", (0.1, 0.3))
     whole = changed(rules, sets)
     gaps = type(whole)("gaps", whole.inputs, whole.outputs, whole.rules[:1], whole.operators)
-    with pytest.raises(
-        RuleBaseError, match=r"gaps: no rule about y fires at a=-0\.3.*gaps"
-    ):
+    with pytest.raises(RuleBaseError, match=r"gaps: no rule about y fires at a=-0\.3.*gaps"):
         export_c(gaps, number="q15", random=10)
 
 
