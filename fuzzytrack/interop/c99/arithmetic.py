@@ -301,7 +301,7 @@ INLINE double NAME_sqrt(double x)
     if (!(x > 0.0) || x == (double)INFINITY) {
         return x >= 0.0 ? x : (double)NAN;
     }
-    memcpy(&bits, &x, sizeof bits);
+    (void)memcpy(&bits, &x, sizeof bits);
     exponent = (int32_t)(bits >> 52);
     digits = bits & UINT64_C(0xFFFFFFFFFFFFF);
     if (exponent != 0) {
@@ -330,7 +330,7 @@ INLINE double NAME_sqrt(double x)
     root = (root + 1u) >> 1;
     exponent = (exponent - 1075) / 2 + 1049;
     bits = ((uint64_t)exponent << 52) + (root - UINT64_C(0x10000000000000));
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 #endif
 }
@@ -341,7 +341,7 @@ INLINE double NAME_two_to(int32_t n)
 {
     const uint64_t bits = (uint64_t)(n + 1023) << 52;
     double result;
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 }
 """,
@@ -393,10 +393,10 @@ INLINE void NAME_log_parts(double x, double *high, double *low)
         m = m * 18014398509481984.0;
         n = -54;
     }
-    memcpy(&bits, &m, sizeof bits);
+    (void)memcpy(&bits, &m, sizeof bits);
     n += (int32_t)(bits >> 52) - 1023;
     bits = (bits & UINT64_C(0xFFFFFFFFFFFFF)) | UINT64_C(0x3FF0000000000000);
-    memcpy(&m, &bits, sizeof m);
+    (void)memcpy(&m, &bits, sizeof m);
     if (m > 1.4142135623730951) {
         m = m * 0.5;
         ++n;
@@ -510,7 +510,7 @@ INLINE float NAME_sqrt(float x)
     if (!(x > 0.0f) || x == INFINITY) {
         return x >= 0.0f ? x : NAN;
     }
-    memcpy(&bits, &x, sizeof bits);
+    (void)memcpy(&bits, &x, sizeof bits);
     exponent = (int32_t)(bits >> 23);
     digits = bits & UINT32_C(0x7FFFFF);
     if (exponent != 0) {
@@ -541,7 +541,7 @@ INLINE float NAME_sqrt(float x)
     root = (root + 1u) >> 1;
     exponent = (exponent - 150) / 2 + 139;
     bits = ((uint32_t)exponent << 23) + (root - UINT32_C(0x800000));
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 #endif
 }
@@ -552,7 +552,7 @@ INLINE float NAME_two_to(int32_t n)
 {
     const uint32_t bits = (uint32_t)(n + 127) << 23;
     float result;
-    memcpy(&result, &bits, sizeof result);
+    (void)memcpy(&result, &bits, sizeof result);
     return result;
 }
 """,
@@ -598,10 +598,10 @@ INLINE void NAME_log_parts(float x, float *high, float *low)
         m = m * 33554432.0f;
         n = -25;
     }
-    memcpy(&bits, &m, sizeof bits);
+    (void)memcpy(&bits, &m, sizeof bits);
     n += (int32_t)(bits >> 23) - 127;
     bits = (bits & UINT32_C(0x7FFFFF)) | UINT32_C(0x3F800000);
-    memcpy(&m, &bits, sizeof m);
+    (void)memcpy(&m, &bits, sizeof m);
     if (m > 1.4142135f) {
         m = m * 0.5f;
         ++n;

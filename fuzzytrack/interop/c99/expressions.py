@@ -339,7 +339,9 @@ class ExpressionWriter:
         if sign in ("//", "%"):
             name = "floor_divide" if sign == "//" else "modulo"
             return self.helper(name, NUMBER, first, second)
-        return Scalar(f"{inside(first, rank)} {sign} {inside(second, rank - 1)}", NUMBER, rank)
+        # Products in sums stand in parentheses, too: rules for critical systems ask for it.
+        text = f"{operand(first, rank)} {sign} {operand(second, rank, last=True)}"
+        return Scalar(text, NUMBER, rank)
 
     def _truths(
         self,
@@ -395,10 +397,10 @@ class ExpressionWriter:
         low, high = min(corners), max(corners)
         rank = PRODUCT if sign == "*" else SUM
         if max(-low, high) <= _INT32:
-            text = f"{inside(a, rank)} {sign} {inside(b, rank - 1)}"
+            text = f"{operand(a, rank)} {sign} {operand(b, rank, last=True)}"
             return Scalar(text, WHOLE, rank, low, high)
         if max(-low, high) <= _INT64:
-            text = f"(int64_t){inside(a, UNARY)} {sign} {inside(b, rank - 1)}"
+            text = f"(int64_t){inside(a, UNARY)} {sign} {operand(b, rank, last=True)}"
             return Scalar(text, WHOLE, rank, low, high)
         if sign == "-":
             b = self.helper("multiply_whole", WHOLE, b, whole_constant(-1))
@@ -455,7 +457,7 @@ class ExpressionWriter:
         if form_of(held) == TRUTH and form_of(rest) == TRUTH and not rest_block.items:
             self.block.costs += rest_block.costs
             second = self.scalar(node, rest)
-            parts = [f"({v.text})" if v.rank >= EQUAL else v.text for v in (truth, second)]
+            parts = [inside(each, UNARY) for each in (truth, second)]
             return Scalar((" && " if both else " || ").join(parts), TRUTH, LOGICAL)
         other = Block()
         branches = ((rest_block, rest), (other, held))
@@ -474,7 +476,7 @@ class ExpressionWriter:
         unknown = [part for part in parts if isinstance(part, Scalar)]
         if len(unknown) < 2:
             return unknown[0] if unknown else Known(True)
-        texts = [f"({part.text})" if part.rank >= EQUAL else part.text for part in unknown]
+        texts = [inside(part, UNARY) for part in unknown]
         return Scalar(" && ".join(texts), TRUTH, LOGICAL)
 
     def _comparison(self, node: ast.Compare, op: ast.cmpop, left: Value, right: Value) -> Value:
@@ -497,7 +499,7 @@ class ExpressionWriter:
             # Compilers warn of it. A number is compared with itself to find NaN.
             return Known(bool(compute(0, 0)))
         self.cost("comparisons")
-        return Scalar(f"{inside(first, SUM)} {sign} {inside(second, SUM)}", TRUTH, rank)
+        return Scalar(f"{inside(first, UNARY)} {sign} {inside(second, UNARY)}", TRUTH, rank)
 
     def _ifexp(self, node: ast.IfExp) -> Value:
         condition = self.truth(node.test, self.value(node.test))
@@ -545,9 +547,7 @@ class ExpressionWriter:
         self.cost("choices")
         a = self.scalar(node, self.converted(node, then, form))
         b = self.scalar(node, self.converted(node, other, form))
-        text = " ".join(
-            (inside(condition, EQUAL), "?", inside(a, LOGICAL), ":", inside(b, LOGICAL))
-        )
+        text = " ".join((inside(condition, UNARY), "?", inside(a, UNARY), ":", inside(b, UNARY)))
         return Scalar(text, form, CHOICE, min(a.low, b.low), max(a.high, b.high))
 
     def within_limits(self, name: str, value: Scalar) -> Scalar:
@@ -718,6 +718,15 @@ def flat(value: Value) -> list[Value]:
 def inside(value: Scalar, rank: int) -> str:
     """Text of an operand of an operator of that rank."""
     return f"({value.text})" if value.rank > rank else value.text
+
+
+def operand(value: Scalar, rank: int, *, last: bool = False) -> str:
+    """As `inside`, with parentheses also around another operator that comes first anyway.
+
+    Without them are only operators of the same rank, if they are not in the last operand.
+    """
+    alone = value.rank <= UNARY or (value.rank == rank and not last)
+    return value.text if alone else f"({value.text})"
 
 
 def whole_constant(value: int) -> Scalar:

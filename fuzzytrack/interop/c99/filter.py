@@ -218,7 +218,7 @@ class _Template:
             "    state->time = (double)NAN;",
             f"    for (k = 0; k < {self.lanes}; ++k) {{",
             "        state->plot_time[k] = (double)NAN;",
-            "        memcpy(state->kept[k], fresh, sizeof fresh);",
+            "        (void)memcpy(state->kept[k], fresh, sizeof fresh);",
             "    }",
             f"    for (k = 0; k < {self.axes}; ++k) {{",
             *(f"        state->{name}[k] = {nan};" for name in _SHOWN),
@@ -255,8 +255,8 @@ class _Template:
             f"    for (k = 0; k < {self.lanes}; ++k) {{",
             "        const bool started = state->plot_time[k] == state->plot_time[k];",
             "        bool seen = true;",
-            "        memset(b, 0, sizeof b);",
-            "        memcpy(b, state->kept[k], sizeof state->kept[k]);",
+            "        (void)memset(b, 0, sizeof b);",
+            "        (void)memcpy(b, state->kept[k], sizeof state->kept[k]);",
             f"        for (j = 0; j < {n}; ++j) {{",
             f"            const {self.number} z = plot[{_sum(_product('k', n), 'j')}];",
             f"            b[{_sum('j', rows.plot)}] = z;",
@@ -290,7 +290,7 @@ class _Template:
 
     def _kept(self) -> list[str]:
         """The state after a step: with time from plot to plot, that of the last plot."""
-        copy = "memcpy(state->kept[k], b, sizeof state->kept[k]);"
+        copy = "(void)memcpy(state->kept[k], b, sizeof state->kept[k]);"
         time = "state->plot_time[k] = time;"
         if not self.elapsed:
             return [f"        {copy}", f"        {time}"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fuzzytrack.interop.c99.function_writer import written_function
-from fuzzytrack.interop.c99.program import Program
+from fuzzytrack.interop.c99.program import Program, Written
 from fuzzytrack.interop.c99.python_source import definition_of, plain_function
 from fuzzytrack.interop.c99.values import NUMBER, Form, leaves
 from fuzzytrack.reprs import summary
@@ -131,50 +131,69 @@ def translated(
         raise ValueError(f"arguments: {len(forms)} for a function that takes {len(names)}")
     program = Program(name, number, libm)
     written = written_function(program, plain, forms)
-    heads, before, given, takes = [], [], [], []
-    for k, (argument, form) in enumerate(zip(names, forms, strict=True)):
-        kinds = list(leaves(form))
-        if not kinds:
-            continue
-        # A name of its own, since that in Python may be a word of C.
-        written_name = f"{argument}_{k}" if not argument.isascii() else f"{argument}_in"
-        takes.append(0 if form == NUMBER else len(kinds))
-        if form == NUMBER:
-            heads.append(f"{program.number} {written_name}")
-        else:
-            heads.append(f"const {program.number} {written_name}[{len(kinds)}]")
-        if not written.used[len(heads) - 1]:
-            before.append(f"(void){written_name};")
-        elif form == NUMBER:
-            given.append(written_name)
-        else:
-            places = ", ".join(f"{written_name}[{j}]" for j in range(len(kinds)))
-            given.append(f"({program.struct(form)}){{{{{places}}}}}")
-    call = f"{written.name}({', '.join(given)})"
-    kinds = list(leaves(written.result))
-    result, gives = "void", len(kinds) if isinstance(written.result, tuple) else 0
-    if gives:
-        array = program.struct_is_array(written.result)
-        heads.append(f"{program.number} result[{len(kinds)}]")
-        before.append(f"const {program.struct(written.result)} found = {call};")
-        for j, kind in enumerate(kinds):
-            cast = "" if kind == NUMBER else f"({program.number})"
-            before.append(f"result[{j}] = {cast}found.{f'v[{j}]' if array else f'f{j}'};")
-    elif kinds:
-        result = program.number
-        cast = "" if kinds[0] == NUMBER else f"({program.number})"
-        before.append(f"return {cast}{call};")
-    else:
-        before.append(f"{call};")
-    prototype = f"{result} {name}({', '.join(heads) or 'void'})"
-    program.functions.append(
-        "\n".join([f"FUZZYTRACK_INLINE {prototype}", "{", *(f"    {line}" for line in before), "}"])
-    )
+    entry = _entry(program, written, dict(zip(names, forms, strict=True)))
     return Translation(
-        name, number, program.definitions(), prototype, tuple(takes), gives, INCLUDES,
-        frozenset(program.needs),
+        name, number, program.definitions(), *entry, INCLUDES, frozenset(program.needs),
         dict(sorted(written.costs.items())), program.constants_bytes,
     )  # fmt: skip
+
+
+def _entry(
+    program: Program, written: Written, arguments: Mapping[str, Form]
+) -> tuple[str, tuple[int, ...], int]:
+    """Add the function that users call, which takes arrays in place of structs.
+
+    Returns
+    -------
+    prototype, takes, gives
+        As in a `Translation`.
+    """
+    heads, lines, given, takes = [], [], [], []
+    for k, (argument, form) in enumerate(arguments.items()):
+        count = len(list(leaves(form)))
+        if not count:
+            continue
+        # A name of its own, since that in Python may be a word of C.
+        name = f"{argument}_in" if argument.isascii() else f"argument_{k}"
+        takes.append(0 if form == NUMBER else count)
+        if form == NUMBER:
+            heads.append(f"{program.number} {name}")
+        else:
+            heads.append(f"const {program.number} {name}[{count}]")
+        if not written.used[len(heads) - 1]:
+            lines.append(f"(void){name};")
+        elif form == NUMBER:
+            given.append(name)
+        else:
+            places = ", ".join(f"{name}[{j}]" for j in range(count))
+            given.append(f"({program.struct(form)}){{{{{places}}}}}")
+    call = f"{written.name}({', '.join(given)})"
+    kind, gives, results = _results(program, written, call)
+    if gives:
+        heads.append(f"{program.number} result[{gives}]")
+    prototype = f"{kind} {program.name}({', '.join(heads) or 'void'})"
+    body = (f"    {line}" for line in (*lines, *results))
+    program.functions.append("\n".join([f"FUZZYTRACK_INLINE {prototype}", "{", *body, "}"]))
+    return prototype, tuple(takes), gives
+
+
+def _results(program: Program, written: Written, call: str) -> tuple[str, int, list[str]]:
+    """Type of the result, how many numbers are written into an array, and how."""
+    kinds = list(leaves(written.result))
+    casts = ["" if kind == NUMBER else f"({program.number})" for kind in kinds]
+    if not kinds:
+        return "void", 0, [f"{call};"]
+    if not isinstance(written.result, tuple):
+        return program.number, 0, [f"return {casts[0]}{call};"]
+    array = program.struct_is_array(written.result)
+    members = (f"v[{j}]" if array else f"f{j}" for j in range(len(kinds)))
+    return "void", len(kinds), [
+        f"const {program.struct(written.result)} found = {call};",
+        *(
+            f"result[{j}] = {cast}found.{member};"
+            for j, (cast, member) in enumerate(zip(casts, members, strict=True))
+        ),
+    ]  # fmt: skip
 
 
 def translated_kernel(
