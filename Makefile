@@ -109,6 +109,7 @@ fuzz: $(VENV)/.installed-test ## Try new random examples, FUZZ_COUNT broken rule
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_FILES) --format fis
 	$(BIN)/python tests/fuzz_rulebases.py --count $(FUZZ_FILES) --format fll
+	$(BIN)/python tests/round_trips.py
 	$(BIN)/python tests/fuzz_readers.py --count $(FUZZ_FILES)
 	$(BIN)/python tests/fuzz_files.py --rows $(FUZZ_COUNT)
 	$(BIN)/python tests/fuzz_scans.py --scans $(FUZZ_FILES)

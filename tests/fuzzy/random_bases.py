@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
+import numpy as np
+
+from fuzzytrack.fuzzy.formats import fis_words
 from fuzzytrack.fuzzy.hedges import HEDGES
 from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
 from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DISJUNCTIONS, Operators
 from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase
+from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
 GRID = ("centroid", "bisector", "mom", "som", "lom")
@@ -169,3 +174,38 @@ def _output(
     else:
         sets = sets_of(rng, rng.randint(2, 4), ["singleton"], low, high, False)
     return Variable(name, universe, sets, default=rng.choice((None, low)), operators=own)
+
+
+def expressible(seed: int, suffix: str) -> RuleBase:
+    """A random rule base that a format can have, ``.fis`` or ``.fll``."""
+    fis = suffix == ".fis"
+    rules = random_base(
+        seed,
+        shapes=[*fis_words.SHAPES] if fis else None,
+        hedges=False,
+        algebras=not fis,
+        alternatives=not fis,
+        own_operators=not fis,
+    )
+
+    def fitting(operators: Operators) -> Operators:
+        sums = fis and operators.defuzzification == "weighted-centers"
+        disjunction = "sum" if sums else operators.disjunction
+        return replace(operators, weighting="product", disjunction=disjunction)
+
+    outputs = [replace(v, operators=v.operators and fitting(v.operators)) for v in rules.outputs]
+    return replace(rules, operators=fitting(rules.operators), outputs=tuple(outputs))
+
+
+def largest_gap(rules: RuleBase, other: RuleBase, count: int) -> float:
+    """Largest difference of two rule bases at points inside and outside of their universes."""
+    rng = np.random.default_rng(5)
+    ends = [(v.universe.low, v.universe.high) for v in rules.inputs]
+    points = np.stack([rng.uniform(a - 0.1, b + 0.1, count) for a, b in ends], axis=1)
+    first, second = (FuzzySystem(r).evaluate(points) for r in (rules, other))
+    assert list(first) == list(second)
+    gaps = []
+    for name, values in first.items():
+        assert np.array_equal(np.isnan(values), np.isnan(second[name]))
+        gaps.append(float(np.nanmax(np.abs(values - second[name]), initial=0.0)))
+    return max(gaps)

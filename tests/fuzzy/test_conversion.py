@@ -1,16 +1,13 @@
 """Rule bases there and back, through every format."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_bases import random_base
+from random_bases import expressible, largest_gap, random_base
 
 import fuzzytrack as ft
 from fuzzytrack.errors import RuleBaseError
-from fuzzytrack.fuzzy.formats import fis_words
 from fuzzytrack.fuzzy.formats.conversion import WRITERS, translated
 from fuzzytrack.fuzzy.formats.fis_reader import loads_fis
 from fuzzytrack.fuzzy.formats.fll_reader import loads_fll
@@ -18,37 +15,6 @@ from fuzzytrack.fuzzy.loading import load_rulebase, loads_rulebase, shipped_rule
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 
 READERS = {".fis": loads_fis, ".fll": loads_fll}
-FIS = [*fis_words.SHAPES]
-
-
-def largest_gap(rules, other, count):
-    rng = np.random.default_rng(5)
-    ends = [(v.universe.low, v.universe.high) for v in rules.inputs]
-    points = np.stack([rng.uniform(a - 0.1, b + 0.1, count) for a, b in ends], axis=1)
-    first, second = (ft.FuzzySystem(r).evaluate(points) for r in (rules, other))
-    assert list(first) == list(second)
-    gaps = []
-    for name, values in first.items():
-        assert np.array_equal(np.isnan(values), np.isnan(second[name]))
-        gaps.append(np.nanmax(np.abs(values - second[name]), initial=0.0))
-    return max(gaps)
-
-
-def expressible(seed, suffix):
-    """A random rule base that the format can have."""
-    fis = suffix == ".fis"
-    rules = random_base(
-        seed, shapes=FIS if fis else None, hedges=False, algebras=not fis, alternatives=not fis,
-        own_operators=not fis,
-    )  # fmt: skip
-
-    def fitting(operators):
-        sums = fis and operators.defuzzification == "weighted-centers"
-        disjunction = "sum" if sums else operators.disjunction
-        return replace(operators, weighting="product", disjunction=disjunction)
-
-    outputs = [replace(v, operators=v.operators and fitting(v.operators)) for v in rules.outputs]
-    return replace(rules, operators=fitting(rules.operators), outputs=tuple(outputs))
 
 
 @pytest.mark.parametrize("suffix", READERS)

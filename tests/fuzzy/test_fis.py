@@ -193,6 +193,17 @@ def test_what_is_no_such_file(text):
         loads_fis(text, "x")
 
 
+def test_shoulders_at_infinity():
+    rules = loads_fis(changed(("'gaussmf',[4.000 5.000]", "'trapmf',[-Inf -Inf 5 8]")), "x")
+    assert rules.inputs[0].sets[0].shape == "linzmf"
+    grades = rules.inputs[0].sets[0].membership([0, 5, 6.5, 8, 30])
+    np.testing.assert_array_equal(grades, [1, 1, 0.5, 0, 0])
+    rules = loads_fis(changed(("'trimf',[60 100 100]", "'trapmf',[60 100 inf inf]")), "x")
+    assert rules.outputs[0].sets[2].parameters == (60, 100)
+    with pytest.raises(RuleBaseError, match="19:12: parameters of trapmf must be finite, but for"):
+        loads_fis(changed(("'gaussmf',[4.000 5.000]", "'trapmf',[-Inf 2 5 8]")), "heater.fis")
+
+
 def test_hedges_of_indices():
     text = changed(("\n1 1, 3", "\n1.20 -1.05, 3"))
     rules = loads_fis(text, "x")

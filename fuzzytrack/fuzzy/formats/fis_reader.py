@@ -7,6 +7,7 @@ file format: sections ``[System]``, ``[Input1]``, …, ``[Output1]``, … and ``
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, replace
 
@@ -160,11 +161,19 @@ class _FisReader:
             )
         return int(entry.text)
 
-    def _numbers(self, entry: _Entry, text: str, offset: int, what: str) -> tuple[float, ...]:
-        return tuple(
-            self.source.number(m.group(), self._place(entry, offset + m.start()), what)
-            for m in _WORD.finditer(text)
-        )
+    def _numbers(
+        self, entry: _Entry, text: str, offset: int, what: str, *, infinite: bool = False
+    ) -> tuple[float, ...]:
+        """Numbers of a list; those that are infinite only where they may be."""
+        found = []
+        for m in _WORD.finditer(text):
+            if infinite and m.group().lower() in ("inf", "+inf", "-inf"):
+                found.append(-math.inf if m.group().startswith("-") else math.inf)
+                continue
+            found.append(
+                self.source.number(m.group(), self._place(entry, offset + m.start()), what)
+            )
+        return tuple(found)
 
     def _word(self, key: str, allowed: dict[str, str], what: str) -> str:
         entry = self._get("system", key)
@@ -304,7 +313,11 @@ class _FisReader:
         name, shape = _unquoted(first), _unquoted(second).strip()
         start = found.start(7)
         numbers = self._numbers(
-            entry, text[start:].replace("[", " ").replace("]", " "), start, f"parameters of {shape}"
+            entry,
+            text[start:].replace("[", " ").replace("]", " "),
+            start,
+            f"parameters of {shape}",
+            infinite=shape == "trapmf" and not constant,
         )
         place = self._place(entry, second.start())
         if constant:
@@ -314,6 +327,13 @@ class _FisReader:
                 f"the shape {quoted(shape)} has no counterpart"
                 f"{suggestion(shape, tuple(words.SHAPES))}; allowed: {', '.join(words.SHAPES)}",
                 place,
+            )
+        shoulder = _shoulder(shape, numbers)
+        if shoulder is not None:
+            return SetPart(name, *shoulder, place)
+        if not all(map(math.isfinite, numbers)):
+            raise RuleBaseError(
+                f"parameters of {shape} must be finite, but for the shoulders of a trapmf", place
             )
         order = words.SHAPES[shape]
         if len(numbers) != len(order.names):
@@ -400,6 +420,19 @@ class _FisReader:
             if index:
                 conditions.append(Condition(number, index - 1, hedges))
         return conditions
+
+
+def _shoulder(shape: str, numbers: tuple[float, ...]) -> tuple[str, tuple[float, ...]] | None:
+    """A trapezoid with one side at infinity, as a straight fall or rise."""
+    if shape != "trapmf" or len(numbers) != 4:
+        return None
+    a, b, c, d = numbers
+    left, right = a == b == -math.inf, c == d == math.inf
+    if left and math.isfinite(c) and math.isfinite(d):
+        return "linzmf", (c, d)
+    if right and math.isfinite(a) and math.isfinite(b):
+        return "linsmf", (a, b)
+    return None
 
 
 def _index(word: str, place: Location) -> tuple[int, tuple[str, ...]]:

@@ -256,8 +256,9 @@ class _Assembly:
         system, carried = self.system, self.system.carried
         self._check_conclusions()
         rules = self._rules()
+        if not any(rule.alternatives for rule in rules):
+            self._forget_alternatives()
         carried.check_names(tuple(self.names))
-        # Words of a file that say more than is needed: where all confidences are 1, and so on.
         variables = [
             self._variable(sets, name, carried)
             for sets, name in zip((*self.inputs, *self.outputs), self.names, strict=True)
@@ -279,6 +280,13 @@ class _Assembly:
         return remember_places(
             found, {name: part.place for name, part in zip(self.names, parts, strict=True)}
         )
+
+    def _forget_alternatives(self) -> None:
+        """Leave out how alternatives are joined, where no rule has any."""
+        self.system.operators = replace(self.system.operators, alternatives="max")
+        for part in self.system.outputs:
+            if part.operators is not None:
+                part.operators = replace(part.operators, alternatives="max")
 
     def _variable(self, sets: _Sets, name: str, carried: Carried) -> Variable:
         part = sets.part
@@ -312,8 +320,6 @@ class _Assembly:
         for rule in expanded:
             for groups in self._split(rule):
                 named = tuple(self._named(group, rule.place) for group in groups)
-                if self.system.operators.alternatives == "max":
-                    named = tuple(dict.fromkeys(named))
                 with located(rule.place):
                     key = Rule(named[0], (Consequent("", ""),), named[1:]).key
                 mine = merged.setdefault(key, _Merged(named, rule.place))
