@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from types import FunctionType
 from typing import Any
 
-from fuzzytrack.interop.c99.expressions import ExpressionWriter, describe
+from fuzzytrack.interop.c99.conversions import describe
+from fuzzytrack.interop.c99.expressions import ExpressionWriter
 from fuzzytrack.interop.c99.python_source import plain_function
 from fuzzytrack.interop.c99.values import (
     CHOICE,

@@ -12,7 +12,8 @@ from typing import NoReturn
 
 from fuzzytrack.interop.c99.blocks import Assignment, Block, Nest, worst
 from fuzzytrack.interop.c99.calls import CallWriter
-from fuzzytrack.interop.c99.expressions import describe, wording
+from fuzzytrack.interop.c99.conversions import describe
+from fuzzytrack.interop.c99.expressions import wording
 from fuzzytrack.interop.c99.program import Program, Written
 from fuzzytrack.interop.c99.python_source import Definition, definition_of
 from fuzzytrack.interop.c99.values import (
