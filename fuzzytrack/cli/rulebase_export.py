@@ -9,9 +9,6 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import output_folder, print_json, progress, say, show
-from fuzzytrack.interop.c99.c_program import operations_in_words
-from fuzzytrack.interop.c99.export import export_c
-from fuzzytrack.interop.c99.number_types import NUMBERS
 from fuzzytrack.plurals import counted
 
 __all__ = ["LANGUAGES", "export"]
@@ -32,7 +29,7 @@ def export(
     number: Annotated[
         str,
         typer.Option(
-            metavar="|".join(NUMBERS),
+            metavar="double|float|q15",
             help="Numbers of inputs and outputs; q15 are integers of 16 bits over the universes.",
         ),
     ] = "double",
@@ -58,6 +55,9 @@ def export(
     json: options.Json = False,
 ) -> None:
     """Write a rule base as a C99 header, with a program that checks it against fuzzytrack."""
+    # Other commands about rule bases need none of it.
+    from fuzzytrack.interop.c99 import export_c
+
     if to not in LANGUAGES:
         raise ValueError(f"--to: unknown language {to!r}; one of {', '.join(LANGUAGES)}")
     folder = output_folder(output, force=force)
@@ -84,6 +84,8 @@ def export(
 
 def _summary(figures: Mapping[str, Any]) -> list[str]:
     """What was written, a line for each fact."""
+    from fuzzytrack.interop.c99.c_program import operations_in_words
+
     unit = " steps" if figures["number"] == "q15" else ""
     nodes = " x ".join(map(str, figures["nodes"]))
     lines = [f"method      {figures['method']}{f', {nodes} nodes' if nodes else ''}"]

@@ -157,7 +157,7 @@ def export_c(
 
     Examples
     --------
-    >>> from fuzzytrack.interop.c99.export import export_c
+    >>> from fuzzytrack.interop.c99 import export_c
     >>> made = export_c("valve", number="q15")
     >>> list(made.files), made.figures["rom_bytes"]
     (['valve.h', 'valve_selftest.c'], 44)
