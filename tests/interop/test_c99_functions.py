@@ -251,6 +251,14 @@ LANGUAGE = {
     "parts of tuples": "t = (x, y, 3.0) + T[1:] * 2\n    return t[::2][1] + sum(t[-3:]) + max(t)",
     "a loop over a tuple": "total = 0.0\n    for part in (x, 1.0, y):\n        total -= part\n"
     "    return total",
+    "a loop that changes what it is over": "for part in (x, x, y):\n        x += part\n"
+    "    t = (x, y, x, y, x)\n    for part in t:\n        t = (part,) + t[1:]\n        x += part\n"
+    "    return x",
+    "a loop that changes its limit": "n, c = int(x), 0.0\n    for k in range(min(n, 4)):\n"
+    "        n = n - 1 if n > 2 else n + 1\n        c += k + 1\n    return c",
+    "several targets": "x = y = x + y\n    a = b = (y, x + 1.0)\n    return x * y + a[1] - b[0]",
+    "names that clash": "bool, bool_, t1 = x, y, 3.0\n    α, alpha, own_numbers_ = y, x, 2.0\n"
+    "    return bool - bool_ * t1 + α * own_numbers_ - alpha",
     "a loop that is left": "total = 0.0\n    for k in range(9, -4, -2):\n        if k < x:\n"
     "            break\n        if k == 5:\n            continue\n        total += k\n"
     "    return total",
@@ -423,8 +431,9 @@ def test_a_function_without_a_source_is_refused():
 
 def test_names_and_types_are_checked():
     function = written("def f(x):\n    return x\n")
-    with pytest.raises(ValueError, match="name must be a name in C"):
-        translated(function, name="2x")
+    for name in ("2x", "double", "sqrt", "uint8_t", "α"):
+        with pytest.raises(ValueError, match="name must be a name in C"):
+            translated(function, name=name)
     with pytest.raises(ValueError, match="number: unknown 'half'"):
         translated(function, name="f", number="half")
     named = written("def f(x, *, y):\n    return x\n")

@@ -14,6 +14,7 @@ from fuzzytrack.interop.c99.blocks import Assignment, Block, Nest, worst
 from fuzzytrack.interop.c99.calls import CallWriter
 from fuzzytrack.interop.c99.conversions import describe
 from fuzzytrack.interop.c99.expressions import wording
+from fuzzytrack.interop.c99.identifiers import c_identifier
 from fuzzytrack.interop.c99.program import Program, Written
 from fuzzytrack.interop.c99.python_source import Definition, definition_of
 from fuzzytrack.interop.c99.values import (
@@ -40,14 +41,8 @@ _LONGEST_UNROLLED = 4
 _WIDENINGS = 3
 _LARGEST_COUNT = 2**31 - 2
 
-#: Words that a variable in C must not have for a name.
-_RESERVED = frozenset(
-    {"auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else",
-     "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
-     "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
-     "union", "unsigned", "void", "volatile", "while", "bool", "true", "false", "memcpy",
-     "errno", "assert", "NAN", "INFINITY", "main"}
-)  # fmt: skip
+#: Functions that C code calls by name, beside words of C.
+_WORDS = frozenset({"memcpy", "memset", "own_numbers"})
 
 
 class _Again(Exception):  # noqa: N818 - not an error: a form was found that is wider
@@ -73,6 +68,8 @@ class FunctionWriter(CallWriter):
         super().__init__(program, definition)
         self.name = name
         self.forms = forms
+        #: Names in C by those in Python.
+        self.c_names: dict[str, str] = {}
         #: Forms of variables, and of the result, as far as they are known.
         self.found: dict[str, Form] = {}
         self.result: Form | None = None
@@ -172,12 +169,14 @@ class FunctionWriter(CallWriter):
         return {NUMBER: self.program.number, WHOLE: "int64_t", TRUTH: "bool"}
 
     def c_name(self, name: str) -> str:
-        """Name of a variable in C."""
-        plain = "".join(
-            c if c.isascii() and (c.isalnum() or c == "_") else f"u{ord(c):x}" for c in name
-        )
-        clash = plain in _RESERVED or plain.startswith((f"{self.program.name}_", "FUZZYTRACK"))
-        return f"{plain}_" if clash or _new(plain) or plain.startswith("__") else plain
+        """Name of a variable in C: no word of C, no name of the program, and no other variable."""
+        if name not in self.c_names:
+            written = c_identifier(name)
+            taken = {*self.c_names.values(), *_WORDS, self.program.name}
+            while written in taken or _new(written) or written.startswith(f"{self.program.name}_"):
+                written += "_"
+            self.c_names[name] = written
+        return self.c_names[name]
 
     # ------------------------------------------------------------ statements
 
@@ -233,6 +232,9 @@ class FunctionWriter(CallWriter):
 
     def _assign_statement(self, node: ast.Assign) -> bool:
         value = self._statement_value(node.value)
+        if len(node.targets) > 1:
+            # Computed once, before any of them is assigned.
+            value = self._held(node, value)
         for target in node.targets:
             self._bind(target, value)
         return False
@@ -446,8 +448,10 @@ class FunctionWriter(CallWriter):
         row = self.row(node.iter, value)
         many = len(row.items) > _LONGEST_UNROLLED
         if many and isinstance(value, Row) and row.whole and set(form_of(value)) == {NUMBER}:
+            # A copy, since the loop may change the tuple.
+            whole = self.temporary(self.program.struct(form_of(value)), row.whole)
             index = self.temporary_name()
-            item = Scalar(f"{row.whole}.v[{index}]", NUMBER, 1)
+            item = Scalar(f"{whole}.v[{index}]", NUMBER, POSTFIX)
             self._loop(node, index, 0, len(row.items), lambda: self._bind(node.target, item))
         else:
             self._unrolled(node, row.items)
@@ -496,11 +500,15 @@ class FunctionWriter(CallWriter):
         step: int = 1,
     ) -> None:  # fmt: skip
         body = Block()
-        if self.stores.get(name, 1) > 1 and _assigned_in(node.body, name):
-            self.refuse(node, f"changes {name!r} in its loop")
-        limit = Known(end) if isinstance(end, int) else end
-        text = self.scalar(node, limit).text
-        highest = self.whole(node, limit).high
+        assert isinstance(node.target, ast.Name)
+        # A loop over numbers of a tuple assigns to its variable in each turn.
+        if name == self.c_name(node.target.id) and _assigned_in(node.body, node.target.id):
+            self.refuse(node, f"changes {node.target.id!r} in its loop")
+        limit = self.whole(node, Known(end) if isinstance(end, int) else end)
+        text, highest = limit.text, limit.high
+        if limit.low != limit.high:
+            # The number of turns does not change when the loop changes what it was computed of.
+            text = self.temporary(self.c_kind(limit), text)
         head = f"for (int32_t {name} = {start}; {name} {'<' if step > 0 else '>'} {text}; "
         turn = f"++{name}" if step == 1 else f"{name} += {step}"
         self.inside_choice += 1
@@ -524,8 +532,9 @@ class FunctionWriter(CallWriter):
         name = node.target.id
         if _assigned_in(node.body, name):
             self.refuse(node, f"changes {name!r} in its loop")
-        for item in items:
-            self.variables[name] = self._held(node, item) if isinstance(item, Row) else item
+        # All are computed before the loop, which may change what they are made of.
+        for item in [self._held(node, item) for item in items]:
+            self.variables[name] = item
             if self._statements(node.body):
                 self.refuse(node, "returns out of a loop")
 
@@ -555,7 +564,7 @@ def written_function(program: Program, function: FunctionType, forms: tuple[Form
 
 def _new(name: str) -> bool:
     """Whether a name is that of a temporary variable."""
-    return name[:1] == "t" and name[1:].isdigit()
+    return re.fullmatch(r"t\d+|own_\d+", name) is not None
 
 
 def _words_of(value: Value) -> set[str]:

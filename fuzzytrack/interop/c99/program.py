@@ -14,6 +14,7 @@ import numpy as np
 
 from fuzzytrack.interop.c99.arithmetic import TYPES, arithmetic
 from fuzzytrack.interop.c99.blocks import Block, Costs
+from fuzzytrack.interop.c99.identifiers import c_identifier
 from fuzzytrack.interop.c99.python_source import Definition
 from fuzzytrack.interop.c99.values import (
     NUMBER,
@@ -42,6 +43,13 @@ _LIBRARY = frozenset(
 
 
 _LINE = 100
+#: Characters in which names are checked.
+_SHORT = 31
+#: Functions of C that compilers know.
+_TAKEN = _LIBRARY | {
+    "abs", "ceil", "exp", "fabs", "floor", "log", "memcpy", "memset", "pow", "round", "sqrt",
+    "trunc",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,8 +98,12 @@ class Program:
         self, name: str, number: str = "double", libm: Sequence[str] = (),
         taken: Sequence[str] = (),
     ) -> None:  # fmt: skip
-        if not (name.isascii() and name.isidentifier()):
-            raise ValueError(f"name must be a name in C (letters, digits, _), got {name!r}")
+        short = name[:_SHORT]
+        if not name.isidentifier() or c_identifier(short) != short or name in _TAKEN:
+            raise ValueError(
+                f"name must be a name in C (letters, digits, _) that has no meaning there, got "
+                f"{name!r}"
+            )
         if number not in TYPES:
             raise ValueError(f"number: unknown {number!r}; one of {', '.join(TYPES)}")
         self.name = name
