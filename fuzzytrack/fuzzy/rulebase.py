@@ -17,15 +17,7 @@ from fuzzytrack.reprs import shown
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = [
-    "MAX_ALTERNATIVES",
-    "Conditions",
-    "Consequent",
-    "Operators",
-    "Rule",
-    "RuleBase",
-    "TableLayout",
-]
+__all__ = ["Consequent", "Operators", "Rule", "RuleBase", "TableLayout"]
 
 _USUAL = Operators()
 MAX_INPUTS = 8

@@ -94,15 +94,6 @@ class _Block:
         return "" if value is None or value.text == "none" else value.text
 
 
-@dataclass(frozen=True)
-class _Output:
-    """What an output says of its conclusions."""
-
-    defuzzification: str
-    aggregation: str
-    place: Location
-
-
 class _FllReader:
     def __init__(self, source: SourceText, name: str) -> None:
         self.source = source

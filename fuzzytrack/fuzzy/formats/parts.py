@@ -36,18 +36,12 @@ from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.yamltree import quoted
 
 __all__ = [
-    "DEFAULT_GRID",
-    "Condition",
-    "RulePart",
-    "SetPart",
-    "System",
-    "VariablePart",
-    "proper_name",
-]
+    "DEFAULT_GRID", "Condition", "Group", "RulePart", "SetPart", "System", "VariablePart", "is_linear",
+    "proper_name", "widened",
+]  # fmt: skip
 
 #: Points and grid of a variable of which a file says nothing: those of MATLAB.
 DEFAULT_GRID = (101, "ends")
-_MOST_EXPANDED = 100_000
 
 
 @dataclass(frozen=True)
