@@ -36,8 +36,8 @@ from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.yamltree import quoted
 
 __all__ = [
-    "DEFAULT_GRID", "Condition", "Group", "RulePart", "SetPart", "System", "VariablePart", "is_linear",
-    "proper_name", "widened",
+    "DEFAULT_GRID", "Condition", "Group", "RulePart", "SetPart", "System", "VariablePart",
+    "is_linear", "proper_name", "widened",
 ]  # fmt: skip
 
 #: Points and grid of a variable of which a file says nothing: those of MATLAB.
