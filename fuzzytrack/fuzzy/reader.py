@@ -256,9 +256,8 @@ class Reader:
     def _check_place(
         self, fuzzy_set: FuzzySet, node: Node, variable: str, universe: Universe
     ) -> None:
-        start, end = SHAPES[fuzzy_set.shape].core(fuzzy_set.parameters)
-        # A tail is above zero everywhere, and a sigmoid is never exactly 1.
-        low, high = fuzzy_set.support()[:2] if fuzzy_set.is_tailed else (start, end)
+        # Its peak may lie outside, as in files of other programs.
+        low, high = fuzzy_set.support()[:2]
         if high < universe.low or low > universe.high:
             raise self.document.error(
                 node,

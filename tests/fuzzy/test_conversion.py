@@ -119,3 +119,11 @@ def test_names_are_made_proper():
     assert rules.inputs[0].set_names == ("good", "good_2", "excellent")
     assert rules.inputs[1].set_names == ("a__b_c", "delicious")
     assert loads_rulebase(dumps_rulebase(rules)) == rules
+
+
+def test_sets_whose_peak_is_out_of_range_are_converted():
+    text = translated(load_rulebase("tipper"), "x.fis").text
+    rules = loads_fis(text.replace("[20 25 30]", "[20 31 40]"), "x")
+    assert loads_rulebase(dumps_rulebase(rules)) == rules
+    with pytest.raises(RuleBaseError, match="'generous' lies outside the universe of tip"):
+        dumps_rulebase(loads_fis(text.replace("[20 25 30]", "[31 35 40]"), "x"))

@@ -214,7 +214,6 @@ TABLE_MISTAKES = {
         ["ascending", "'ze' at -0.8", "'ne' at -0.75"],
     ),
     "outside": ("[0, 0.5, 1, 1]", "[1.1, 1.5, 2, 2]", "{trapmf: [1.1", ["outside", "[-1, 1]"]),
-    "core outside": ("[0, 0.5, 1, 1]", "[0, 1.5, 2, 2]", "{trapmf: [0, 1.5", ["outside"]),
     "bare stretch": ("[0, 0.5, 1, 1]", "[0.6, 0.7, 1, 1]", "dE:\n    u", ["between 0.5 and 0.6"]),
     "bare point": ("[0, 0.5, 1, 1]", "[0.5, 0.7, 1, 1]", "dE:\n    u", ["dE at 0.5"]),
     "set name": ("ze: {", '"z e": {', '"z e"', ["'z e'", "blank"]),
