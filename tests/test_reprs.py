@@ -11,8 +11,8 @@ from matplotlib import pyplot as plt
 
 import fuzzytrack as ft
 from fuzzytrack import normalizations, schedulers, trackers
-from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.saving import save_rulebase
+from fuzzytrack.fuzzy.shapes import SHAPES
 from fuzzytrack.gains.cost import TrackingCost
 from fuzzytrack.io.columns import Columns
 from fuzzytrack.io.piece import Piece

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.fuzzy.inference import Conclusions, conclusions
-from fuzzytrack.fuzzy.membership import LINEAR
 from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS, Norm
 from fuzzytrack.fuzzy.ramps import find_ramps
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from fuzzytrack.errors import Location, Word
 from fuzzytrack.fuzzy.cells import CellReader
-from fuzzytrack.fuzzy.membership import SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DEFUZZIFICATIONS, DISJUNCTIONS, Operators
 from fuzzytrack.fuzzy.rulebase import (
     Conditions,
@@ -20,6 +20,7 @@ from fuzzytrack.fuzzy.rulebase import (
     TableLayout,
     remember_places,
 )
+from fuzzytrack.fuzzy.shapes import SHAPES
 from fuzzytrack.fuzzy.variable import GRIDS, Universe, Variable
 from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode

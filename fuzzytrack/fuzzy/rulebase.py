@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from fuzzytrack.errors import Location, RuleBaseError
-from fuzzytrack.fuzzy.membership import LINEAR
 from fuzzytrack.fuzzy.operators import Operators
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.html_reprs import Cell, block, paragraph, table, tinted
 from fuzzytrack.reprs import shown

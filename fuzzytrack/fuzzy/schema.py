@@ -6,7 +6,6 @@ import json
 from typing import Any
 
 from fuzzytrack.fuzzy.hedges import HEDGES
-from fuzzytrack.fuzzy.membership import MAX_PARAMETERS, SHAPES
 from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DEFUZZIFICATIONS, DISJUNCTIONS
 from fuzzytrack.fuzzy.reader import (
     FORMAT_VERSION,
@@ -20,6 +19,7 @@ from fuzzytrack.fuzzy.rulebase import (
     MAX_OUTPUTS,
     MAX_RULES,
 )
+from fuzzytrack.fuzzy.shapes import MAX_PARAMETERS, SHAPES
 from fuzzytrack.fuzzy.variable import GRIDS, MAX_POINTS
 
 __all__ = ["dumps_schema", "rulebase_schema"]

@@ -40,10 +40,10 @@ def set_shape(
     variable, set_name : str
         Name of an input or output, and of one of its sets.
     parameters : sequence of float
-        In the units of the variable, in the order of `fuzzytrack.fuzzy.membership.SHAPES`. Numbers
+        In the units of the variable, in the order of `fuzzytrack.fuzzy.shapes.SHAPES`. Numbers
         that stay are left as they are written.
     shape : str, optional
-        A key of `fuzzytrack.fuzzy.membership.SHAPES`; the shape that it has unless given.
+        A key of `fuzzytrack.fuzzy.shapes.SHAPES`; the shape that it has unless given.
     apart : bool
         Whether a set that is shared by an anchor is written out first, so that only this one is
         changed.

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.errors import RuleBaseError
-from fuzzytrack.fuzzy.membership import LINEAR, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.operators import Operators
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.html_reprs import block, curves
 from fuzzytrack.reprs import summary
 

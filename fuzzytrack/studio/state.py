@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fuzzytrack.errors import FileError
-from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.rule_edits import OPERATORS
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.saving import cell_text, consequents_text
+from fuzzytrack.fuzzy.shapes import SHAPES
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
 from fuzzytrack.studio.symmetry import DRAWN

@@ -6,9 +6,10 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from fuzzytrack.fuzzy.loading import loads_rulebase
-from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.numbers import NumberPlaces, Place, Span, replaced
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.shapes import LINEAR, SHAPES
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.schedulers.settings import KEYS
 from fuzzytrack.trackers.base import Tracker

@@ -9,9 +9,10 @@ import numpy as np
 
 from fuzzytrack.fuzzy.formats import fis_words
 from fuzzytrack.fuzzy.hedges import HEDGES
-from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.operators import CONJUNCTIONS, DISJUNCTIONS, Operators
 from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase
+from fuzzytrack.fuzzy.shapes import LINEAR, SHAPES
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 

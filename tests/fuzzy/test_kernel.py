@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.kernel import infer_function
-from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.rulebase import Consequent, Operators, Rule, RuleBase
+from fuzzytrack.fuzzy.shapes import LINEAR, SHAPES
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.hedges import HEDGES
-from fuzzytrack.fuzzy.membership import LINEAR, SHAPES, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.shapes import LINEAR, SHAPES
 
 # A linear function of the inputs has no grades.
 GRADED = set(SHAPES) - {LINEAR}

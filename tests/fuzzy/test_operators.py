@@ -16,12 +16,13 @@ from fuzzytrack.fuzzy.coverage import find_hole
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
 from fuzzytrack.fuzzy.kernel import infer_function
 from fuzzytrack.fuzzy.loading import loads_rulebase
-from fuzzytrack.fuzzy.membership import LINEAR, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS
 from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.rulebase import Consequent, Rule, RuleBase
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.set_edits import rename_set
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
 

@@ -11,10 +11,10 @@ from test_loading import LIST, TABLE
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import loads_rulebase, rulebase_path, shipped_rulebases
-from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.operators import DEFUZZIFICATIONS
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.fuzzy.schema import dumps_schema, rulebase_schema
+from fuzzytrack.fuzzy.shapes import SHAPES
 from fuzzytrack.schedulers.settings import scheduler_schema
 
 SCHEMA = rulebase_schema(scheduler_schema())

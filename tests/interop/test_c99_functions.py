@@ -10,8 +10,8 @@ import pytest
 
 import fuzzytrack as ft
 from fuzzytrack.fuzzy.hedges import HEDGES
-from fuzzytrack.fuzzy.membership import SHAPES
 from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS
+from fuzzytrack.fuzzy.shapes import SHAPES
 from fuzzytrack.interop.c99.arithmetic import BOUNDS
 from fuzzytrack.interop.c99.build import CompilerError, built, find_compiler
 from fuzzytrack.interop.c99.compiled import compiled_functions, whole_source

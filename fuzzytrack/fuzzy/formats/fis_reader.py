@@ -23,9 +23,9 @@ from fuzzytrack.fuzzy.formats.parts import (
     widened,
 )  # fmt: skip
 from fuzzytrack.fuzzy.formats.source_text import SourceText, located
-from fuzzytrack.fuzzy.membership import LINEAR
 from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.yamltree import quoted, suggestion
 
 __all__ = ["loads_fis"]

@@ -27,7 +27,7 @@ class Order:
     places: tuple[int, ...]
 
     def read(self, numbers: Numbers) -> Numbers:
-        """Parameters in the order of `fuzzytrack.fuzzy.membership.SHAPES`."""
+        """Parameters in the order of `fuzzytrack.fuzzy.shapes.SHAPES`."""
         return tuple(numbers[place] for place in self.places)
 
     def written(self, parameters: Numbers) -> Numbers:

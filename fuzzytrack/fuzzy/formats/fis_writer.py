@@ -17,9 +17,9 @@ from fuzzytrack.fuzzy.formats.translation import (
     one_line,
     rows,
 )  # fmt: skip
-from fuzzytrack.fuzzy.membership import LINEAR
 from fuzzytrack.fuzzy.numbers import written
 from fuzzytrack.fuzzy.rulebase import Conditions, RuleBase
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.fuzzy.variable import Variable
 
 __all__ = ["dumps_fis"]

@@ -16,9 +16,9 @@ from fuzzytrack.fuzzy.formats.carried import Carried
 from fuzzytrack.fuzzy.formats.fll_rules import RuleParser
 from fuzzytrack.fuzzy.formats.parts import SetPart, System, VariablePart, is_linear, widened
 from fuzzytrack.fuzzy.formats.source_text import SourceText
-from fuzzytrack.fuzzy.membership import LINEAR
 from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.yamltree import quoted, suggestion
 
 __all__ = ["DEFAULT_RESOLUTION", "loads_fll"]

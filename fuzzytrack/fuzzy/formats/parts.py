@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.formats.carried import Carried
 from fuzzytrack.fuzzy.formats.source_text import located
-from fuzzytrack.fuzzy.membership import LINEAR, FuzzySet
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.reader import MAX_NAME, SET_NAME
 from fuzzytrack.fuzzy.rulebase import (
@@ -32,6 +32,7 @@ from fuzzytrack.fuzzy.rulebase import (
     RuleBase,
     remember_places,
 )  # fmt: skip
+from fuzzytrack.fuzzy.shapes import LINEAR
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.yamltree import quoted
 

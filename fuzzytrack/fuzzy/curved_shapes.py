@@ -1,53 +1,114 @@
-"""Formulas of membership shapes that scikit-fuzzy lacks, or has without a scalar expression.
+"""Formulas of membership shapes with curved sides, for `fuzzytrack.fuzzy.shapes`.
 
-Each is a function on arrays and a scalar Python expression; `fuzzytrack.fuzzy.membership` has them
-in its table of shapes.
+Those that end in ``values`` are functions on arrays; the others write a scalar Python expression.
 """
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.fuzzy.stretches import Stretch
 
 __all__ = [
-    "concave", "concave_values", "cosine", "cosine_values", "discrete", "discrete_core",
-    "discrete_ones", "discrete_positive", "discrete_values", "ellipse",
-    "ellipse_values",
-    "quarter_circle", "quarter_circle_values", "sigmoid_difference", "sigmoid_difference_values",
-    "sigmoid_peak", "sigmoid_product", "sigmoid_product_values", "spike", "spike_values",
+    "EXPONENT", "bell", "concave", "concave_values", "cosine", "cosine_values", "ellipse",
+    "ellipse_values", "gaussian", "pi_curve", "quarter_circle", "quarter_circle_values", "s_curve",
+    "sigmoid", "sigmoid_difference", "sigmoid_difference_values", "sigmoid_peak",
+    "sigmoid_product", "sigmoid_product_values", "spike", "spike_values",
+    "two_gaussians", "two_gaussians_values", "z_curve",
 ]  # fmt: skip
 
 Parameters = tuple[float, ...]
 
-# math.exp overflows beyond 709.
-_EXPONENT = 700.0
+#: exp(-x) is above zero up to here; math.exp overflows beyond 709.
+EXPONENT = 700.0
 # So many times the inverse of its slope from its inflection, a sigmoid is flat.
 _FLAT = 40.0
 # Search of a peak: each round leaves a twentieth of the interval.
 _ROUNDS, _POINTS = 12, 41
 
+# -------------------------------------------------------------------- curves of scikit-fuzzy
+
+
+def gaussian(mean: float, sigma: float, x: str) -> str:
+    """Write a Gaussian."""
+    return f"exp(-(({x} - {mean!r}) * ({x} - {mean!r})) / {2 * sigma * sigma!r})"
+
+
+def two_gaussians(parameters: Parameters, x: str) -> str:
+    """Write two halves of Gaussians with 1 between them."""
+    mean1, sigma1, mean2, sigma2 = parameters
+    left, right = gaussian(mean1, sigma1, x), gaussian(mean2, sigma2, x)
+    return f"({left} if {x} <= {mean1!r} else 1.0) * ({right} if {x} > {mean2!r} else 1.0)"
+
+
+def two_gaussians_values(parameters: Parameters, x: Array) -> Array:
+    """Evaluate the halves of Gaussians."""
+    mean1, sigma1, mean2, sigma2 = parameters
+    left = np.exp(-((x - mean1) ** 2) / (2 * sigma1**2))
+    right = np.exp(-((x - mean2) ** 2) / (2 * sigma2**2))
+    return np.where(x <= mean1, left, 1.0) * np.where(x > mean2, right, 1.0)
+
+
+def bell(parameters: Parameters, x: str) -> str:
+    """Write a generalized bell."""
+    a, b, c = parameters
+    # Where the power passes 1e300 the grade is zero and Python's ** would overflow.
+    far = 10 ** min(300.0, 150 / b)
+    return f"1.0 / (1.0 + min(abs(({x} - {c!r}) / {a!r}), {far!r}) ** {2 * b!r})"
+
+
+# The ends come first: between neighboring floats the middle is rounded to one of them. At the
+# middle itself, the half that scikit-fuzzy uses there is used; it differs between shapes.
+def s_curve(a: float, b: float, x: str, lower: str) -> str:
+    """Write two parabolas that rise from 0 at `a` to 1 at `b`."""
+    middle, width = (a + b) / 2, b - a
+    if width == 0:
+        return f"(1.0 if {x} >= {b!r} else 0.0)"
+    low, high = f"(({x} - {a!r}) / {width!r})", f"(({x} - {b!r}) / {width!r})"
+    return (
+        f"(0.0 if {x} <= {a!r} else 1.0 if {x} >= {b!r} else 2.0 * {low} * {low} "
+        f"if {x} {lower} {middle!r} else 1.0 - 2.0 * {high} * {high})"
+    )
+
+
+def z_curve(a: float, b: float, x: str) -> str:
+    """Write two parabolas that fall from 1 at `a` to 0 at `b`."""
+    middle, width = (a + b) / 2, b - a
+    if width == 0:
+        return f"(1.0 if {x} <= {a!r} else 0.0)"
+    low, high = f"(({x} - {a!r}) / {width!r})", f"(({x} - {b!r}) / {width!r})"
+    return (
+        f"(1.0 if {x} <= {a!r} else 0.0 if {x} >= {b!r} else 1.0 - 2.0 * {low} * {low} "
+        f"if {x} < {middle!r} else 2.0 * {high} * {high})"
+    )
+
+
+def pi_curve(parameters: Parameters, x: str) -> str:
+    """Write the rise of an s-curve times the fall of a z-curve."""
+    a, b, c, d = parameters
+    return f"{s_curve(a, b, x, '<=')} * {z_curve(c, d, x)}"
+
+
 # -------------------------------------------------------------------- two sigmoids
 
 
-def _sigmoid(b: float, c: float, x: str) -> str:
-    return f"1.0 / (1.0 + exp(min({_EXPONENT!r}, {-c!r} * ({x} - {b!r}))))"
+def sigmoid(b: float, c: float, x: str) -> str:
+    """Write a sigmoid with its inflection at `b`."""
+    return f"1.0 / (1.0 + exp(min({EXPONENT!r}, {-c!r} * ({x} - {b!r}))))"
 
 
 def sigmoid_difference(parameters: Parameters, x: str) -> str:
     """Write the absolute difference of two sigmoids."""
     b1, c1, b2, c2 = parameters
-    return f"abs({_sigmoid(b1, c1, x)} - {_sigmoid(b2, c2, x)})"
+    return f"abs({sigmoid(b1, c1, x)} - {sigmoid(b2, c2, x)})"
 
 
 def sigmoid_product(parameters: Parameters, x: str) -> str:
     """Write the product of two sigmoids."""
     b1, c1, b2, c2 = parameters
-    return f"{_sigmoid(b1, c1, x)} * ({_sigmoid(b2, c2, x)})"
+    return f"{sigmoid(b1, c1, x)} * ({sigmoid(b2, c2, x)})"
 
 
 def sigmoid_difference_values(parameters: Parameters, x: Array) -> Array:
@@ -64,8 +125,8 @@ def sigmoid_product_values(parameters: Parameters, x: Array) -> Array:
 
 def _two_sigmoids(parameters: Parameters, x: Array) -> tuple[Array, Array]:
     b1, c1, b2, c2 = parameters
-    first = 1.0 / (1.0 + np.exp(np.minimum(_EXPONENT, -c1 * (x - b1))))
-    second = 1.0 / (1.0 + np.exp(np.minimum(_EXPONENT, -c2 * (x - b2))))
+    first = 1.0 / (1.0 + np.exp(np.minimum(EXPONENT, -c1 * (x - b1))))
+    second = 1.0 / (1.0 + np.exp(np.minimum(EXPONENT, -c2 * (x - b2))))
     return np.asarray(first), np.asarray(second)
 
 
@@ -95,77 +156,6 @@ def sigmoid_peak(parameters: Parameters, *, product: bool) -> tuple[float, float
         low, high = float(points[max(best - 1, 0)]), float(points[min(best + 1, _POINTS - 1)])
     middle = (low + high) / 2
     return middle, middle
-
-
-# -------------------------------------------------------------------- points on straight lines
-
-
-def discrete_values(parameters: Parameters, x: Array) -> Array:
-    """Interpolate the grades between the points; beyond them they are those of the ends."""
-    return np.clip(np.interp(x, parameters[::2], parameters[1::2]), 0.0, 1.0)
-
-
-def discrete(parameters: Parameters, x: str) -> str:
-    """Write the grade between points as choices, half of the points left by each."""
-    return _between(parameters[::2], parameters[1::2], x, 0, len(parameters) // 2)
-
-
-def _between(xs: Parameters, ys: Parameters, x: str, first: int, last: int) -> str:
-    """For x below the point number `last` and not below the one before `first`."""
-    if first == last:
-        if first == 0:
-            return repr(ys[0])
-        if first == len(xs):
-            return repr(ys[-1])
-        slope = (ys[first] - ys[first - 1]) / (xs[first] - xs[first - 1])
-        line = f"{slope!r} * ({x} - {xs[first - 1]!r}) + {ys[first - 1]!r}"
-        return f"max(0.0, min(1.0, {line}))"
-    middle = (first + last) // 2
-    below, above = _between(xs, ys, x, first, middle), _between(xs, ys, x, middle + 1, last)
-    return f"({below} if {x} < {xs[middle]!r} else {above})"
-
-
-def discrete_core(parameters: Parameters) -> tuple[float, float]:
-    """From the first point of the largest grade to the last one."""
-    places, grades = parameters[::2], parameters[1::2]
-    largest = max(grades)
-    at = [k for k, grade in enumerate(grades) if grade == largest]
-    low = -math.inf if at[0] == 0 else places[at[0]]
-    high = math.inf if at[-1] == len(places) - 1 else places[at[-1]]
-    if (low, high) == (-math.inf, math.inf):
-        return places[0], places[-1]
-    return low, high
-
-
-def discrete_positive(parameters: Parameters) -> tuple[Stretch, ...]:
-    """Stretches on which the grade is above zero."""
-    return _where(parameters, [grade > 0.0 for grade in parameters[1::2]], either=True)
-
-
-def discrete_ones(parameters: Parameters) -> tuple[Stretch, ...]:
-    """Stretches on which the grade is 1."""
-    return _where(parameters, [grade == 1.0 for grade in parameters[1::2]], either=False)
-
-
-def _where(parameters: Parameters, true: list[bool], *, either: bool) -> tuple[Stretch, ...]:
-    """Stretches from which points are true; a line between two, if either is, or both are."""
-    places = (-math.inf, *parameters[::2], math.inf)
-    true = [true[0], *true, true[-1]]
-    found: list[Stretch] = []
-    for (low, high), (at_low, at_high) in zip(pairwise(places), pairwise(true), strict=True):
-        line = (at_low or at_high) if either else (at_low and at_high)
-        pieces = [Stretch(low, high, at_low, at_high)] if line else []
-        if not line and at_low:
-            pieces.append(Stretch(low, low, True, True))
-        for piece in pieces:
-            joined = (
-                found and found[-1].high == piece.low and (found[-1].with_high or piece.with_low)
-            )
-            if joined:
-                last = found.pop()
-                piece = Stretch(last.low, piece.high, last.with_low, piece.with_high)
-            found.append(piece)
-    return tuple(found)
 
 
 # -------------------------------------------------------------------- curves of fuzzylite
