@@ -28,12 +28,15 @@ class Shipped:
         A file by which the folder is distinguished from another of the same name.
     failure : type
         The error to raise.
+    endings : str
+        How paths of such files end, for messages.
     """
 
     what: str
     folder: str
     marker: str
     failure: type[FileError]
+    endings: str = ".yaml"
 
     def names(self) -> tuple[str, ...]:
         """Names of the files, without suffix, in alphabetical order."""
@@ -65,7 +68,7 @@ class Shipped:
         if name_or_path not in names:
             raise self.failure(
                 f"unknown {self.what} {quoted(name_or_path)}{suggestion(name_or_path, names)}; "
-                "or a path that ends in .yaml"
+                f"or a path that ends in {self.endings}"
             )
         return self._directory() / f"{name_or_path}.yaml"
 
