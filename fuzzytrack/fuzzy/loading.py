@@ -31,9 +31,7 @@ _OTHERS = {".fcl": "IEC 61131-7"}
 _READERS = {".fis": loads_fis, ".fll": loads_fll}
 _PACKED = (".gz", ".zst", ".zip", ".bz2", ".xz")
 
-_SHIPPED = Shipped(
-    "rule base", "rulebases", SCHEMA_FILE, RuleBaseError, ".yaml, .fis or .fll"
-)
+_SHIPPED = Shipped("rule base", "rulebases", SCHEMA_FILE, RuleBaseError, ".yaml, .fis or .fll")
 
 
 def loads_rulebase(text: str | bytes, file: str = "<text>") -> RuleBase:
