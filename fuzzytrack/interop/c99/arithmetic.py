@@ -16,7 +16,7 @@ __all__ = ["BOUNDS", "NEEDS", "TYPES", "arithmetic"]
 TYPES = {"double": "double", "float": "float"}
 
 #: Largest relative errors of functions that are not rounded correctly, in units of 2^-52 for
-#: double and 2^-23 for float: of 10 million arguments none had more, see `tests/fuzz_c99.py`.
+#: double and 2^-23 for float: of a million arguments none had more, see `tests/fuzz_c99.py`.
 #: Results below the normal numbers are within one step of those that there are.
 BOUNDS = {
     ("exp", "double"): 0.7, ("exp", "float"): 0.7,
