@@ -131,7 +131,9 @@ def write_json(path: Path, value: Any, indent: int = 2) -> None:
         draft.write_text(text + "\n", encoding="utf-8")
 
 
-def output_folder(path: str, *, force: bool = False, resume: bool | None = None) -> Path:
+def output_folder(
+    path: str, *, force: bool = False, resume: bool | None = None, make: bool = True
+) -> Path:
     """Folder for the results of a command, made if it does not exist.
 
     Parameters
@@ -142,6 +144,8 @@ def output_folder(path: str, *, force: bool = False, resume: bool | None = None)
         Whether it may hold files; those of the same names are replaced.
     resume : bool, optional
         Whether the results in it are continued; None for a command that cannot.
+    make : bool
+        Whether it is made now; otherwise it is only checked that it can be.
 
     Raises
     ------
@@ -158,9 +162,11 @@ def output_folder(path: str, *, force: bool = False, resume: bool | None = None)
     elif not (force or resume):
         more = "" if resume is None else ", continue with --resume"
         raise DataError(
-            f"{path}: holds files already; name another folder{more}, or replace them with --force"
+            f"{path or '.'}: holds files already; name another folder{more}, or replace them "
+            "with --force"
         )
-    folder.mkdir(exist_ok=True)
+    if make:
+        folder.mkdir(exist_ok=True)
     return folder
 
 
