@@ -37,7 +37,7 @@ def export(
         bool, typer.Option("--filter", help="Write the whole tracker, too; not with q15.")
     ] = False,
     axes: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Axes of space of the tracker.")
+        int, typer.Option(min=1, max=12, metavar="N", help="Axes of space of the tracker.")
     ] = 2,
     table: Annotated[
         bool,
@@ -60,7 +60,8 @@ def export(
 
     if to not in LANGUAGES:
         raise ValueError(f"--to: unknown language {to!r}; one of {', '.join(LANGUAGES)}")
-    folder = output_folder(output, force=force)
+    # A rule base that is refused leaves no empty folder.
+    folder = output_folder(output, force=force, make=False)
     with progress("Measuring errors") as report:
         made = export_c(
             name,
@@ -71,6 +72,7 @@ def export(
             nodes=nodes,
             progress=report,
         )
+    folder.mkdir(exist_ok=True)
     made.write(folder)
     written = [str(folder / file) for file in made.files]
     if json:

@@ -1,8 +1,10 @@
 """Functions in C against Python: membership shapes, norms, arithmetic, and what is refused."""
 
 import math
+import os
 import random
 import re
+import subprocess
 import sys
 
 import numpy as np
@@ -415,6 +417,34 @@ def test_what_cannot_be_written_is_refused_with_its_place(body):
         translated(function, name="f")
     assert re.match(r"<test>:\d+:\d+: the function f ", str(caught.value))
     assert "\n" not in str(caught.value)
+
+
+#: Two lambdas, of which the first is alone on its line, for a Python without columns.
+WITHOUT_COLUMNS = """
+import sys
+from fuzzytrack.interop.c99.translation import translated
+alone = lambda x: x + 1.0
+one, two = lambda x: x + 2.0, lambda x: x + 3.0
+print("1.0" in translated(alone, name="f").definitions)
+try:
+    translated(two, name="f")
+except ValueError as error:
+    print(error)
+"""
+
+
+def test_lambdas_of_a_python_without_columns(tmp_path):
+    (tmp_path / "two.py").write_text(WITHOUT_COLUMNS)
+    command = [sys.executable, "-X", "no_debug_ranges", "two.py"]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
+    )
+    right, refused = done.stdout.splitlines()
+    assert right == "True"
+    assert re.search(
+        r"two\.py:5:1: .* cannot be told from other lambdas of its line; .*def", refused
+    )
 
 
 def test_a_function_without_a_source_is_refused():

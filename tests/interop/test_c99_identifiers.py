@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fuzzytrack.interop.c99.c_text import array_lines, comment_lines, literal
-from fuzzytrack.interop.c99.identifiers import Identifiers, ascii_text, c_identifier
+from fuzzytrack.interop.c99.identifiers import Identifiers, ascii_text, c_identifier, is_free_name
 
 
 @given(st.text())
@@ -45,6 +45,17 @@ def test_identifiers_of_a_scope_differ(words):
 )
 def test_reserved_and_foreign_words(text, word):
     assert c_identifier(text.replace("ß", "ss")) == word
+
+
+@given(st.text("ab_é1", max_size=40))
+def test_every_identifier_is_free(text):
+    assert is_free_name(c_identifier(text))
+    assert is_free_name(f"{c_identifier(text)}_filter")
+
+
+@pytest.mark.parametrize("name", ["", "_", "a b", "double", "a__b", "_a", "M_PI", "größe"])
+def test_other_words_are_not_free(name):
+    assert not is_free_name(name)
 
 
 def test_text_in_ascii():

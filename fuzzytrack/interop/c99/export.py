@@ -29,7 +29,7 @@ from fuzzytrack.interop.c99.header import (
     about_variables,
     header_text,
 )
-from fuzzytrack.interop.c99.identifiers import c_identifier
+from fuzzytrack.interop.c99.identifiers import SYSTEM_HEADERS, c_identifier, is_free_name
 from fuzzytrack.interop.c99.number_types import NumberType, number_type
 from fuzzytrack.interop.c99.selftest import Check, infer_check, selftest_text
 from fuzzytrack.interop.c99.signature import signature
@@ -122,7 +122,7 @@ def export_c(
     filter : bool
         Whether the whole tracker of a rule base is written beside it.
     axes : int
-        Axes of space of a filter.
+        Axes of space of a filter, 12 at most.
     table : bool
         Whether a rule base that no table at its break points fits is tabulated on a finer grid,
         with an error that is measured, rather than written as formulas. Integers always are.
@@ -252,7 +252,11 @@ def _names(given: str) -> tuple[str, str]:
     """Name of the files, and beginning of the names in C."""
     plain_name = re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", given) is not None
     called = given if plain_name else c_identifier(given, "rules")
-    return called, c_identifier(called, "rules")
+    if called.lower() in SYSTEM_HEADERS:
+        called = f"{called}_rules"
+    # Names begin with the prefix and go on with _, so it may be a reserved word itself.
+    prefix = c_identifier(called, "rules").rstrip("_")
+    return called, prefix if is_free_name(f"{prefix}_filter") else f"rules_{prefix}"
 
 
 def _method(

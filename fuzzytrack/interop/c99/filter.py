@@ -30,6 +30,9 @@ STATUS = {
     "NOT_FINITE": "the track left the range of numbers; start it again",
 }
 
+#: Axes of a filter. With coupled axes the step is written out for each, and long before 24 of them
+#: it is too long for Numba, with which the library runs the same step.
+MOST_AXES = 12
 #: Vectors of the state that a user reads.
 _SHOWN = ("position", "velocity", "acceleration", "predicted", "innovation")
 _MEANINGS = {
@@ -108,8 +111,8 @@ def translated_filter(
     Written from the step of the tracker's `fuzzytrack.lanes.program.LaneProgram`, which also runs
     in Python and compiled. So it does the same operations, in the same order.
     """
-    if not isinstance(axes, int) or axes < 1:
-        raise ValueError(f"axes must be a whole number >= 1, got {axes!r}")
+    if not isinstance(axes, int) or not 1 <= axes <= MOST_AXES:
+        raise ValueError(f"axes must be a whole number from 1 to {MOST_AXES}, got {axes!r}")
     lane_axes = axes if tracker.coupled else 1
     taken = [f"{name}_{part}" for part in ("state", "init", "step", *STATUS)]
     parts = Program(name, number, libm, taken)

@@ -170,7 +170,7 @@ def filter_export(
     TranslationError
         If the tracker cannot be written in C.
     ValueError
-        If the numbers are integers, or `axes` is less than 1.
+        If the numbers are integers, or `axes` is out of range.
 
     Notes
     -----

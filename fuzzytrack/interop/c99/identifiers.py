@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 
-__all__ = ["Identifiers", "ascii_text", "c_identifier"]
+__all__ = ["SYSTEM_HEADERS", "Identifiers", "ascii_text", "c_identifier", "is_free_name"]
 
 #: Words that mean something to a compiler of C or C++, or are macros of headers that programs for
 #: small devices include.
@@ -31,6 +31,16 @@ _RESERVED = frozenset(
 _HEADERS = re.compile(
     r"U?INT\d*_.*|U?INT_.*|U?INTMAX_.*|U?INTPTR_.*|(FLT|DBL|LDBL|SHRT|LONG|LLONG|CHAR|SCHAR|UCHAR)_.*"
     r"|U(INT|SHRT|LONG|LLONG)_MAX|FP_.*|M_\w+|(PTRDIFF|SIZE|WCHAR|WINT|SIG_ATOMIC)_.*|\w+_t|U?INT\w*_C"
+)
+#: Headers of C without ``.h``. A file of such a name beside them could be included in their place.
+SYSTEM_HEADERS = frozenset(
+    re.findall(
+        r"\w+",
+        """
+        assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
+        stdarg stdbool stddef stdint stdio stdlib string tgmath time wchar wctype
+        """,
+    )
 )
 # Longer ones need not differ for all compilers.
 _LENGTH = 31
@@ -73,6 +83,15 @@ def c_identifier(text: str, otherwise: str = "x") -> str:
     if word[0].isdigit():
         word = f"{otherwise}_{word}"[:_LENGTH].rstrip("_")
     return f"{word}_" if word in _RESERVED or _HEADERS.fullmatch(word) else word
+
+
+def is_free_name(name: str) -> bool:
+    """Whether a text is an identifier of C that means nothing to compilers and headers.
+
+    Of a long one that is judged by the characters in which all compilers tell names apart.
+    """
+    short = name[:_LENGTH].rstrip("_")
+    return name.isidentifier() and short != "" and c_identifier(short) == short
 
 
 class Identifiers:

@@ -14,7 +14,7 @@ import numpy as np
 
 from fuzzytrack.interop.c99.arithmetic import TYPES, arithmetic
 from fuzzytrack.interop.c99.blocks import Block, Costs
-from fuzzytrack.interop.c99.identifiers import c_identifier
+from fuzzytrack.interop.c99.identifiers import is_free_name
 from fuzzytrack.interop.c99.python_source import Definition
 from fuzzytrack.interop.c99.values import (
     NUMBER,
@@ -43,8 +43,6 @@ _LIBRARY = frozenset(
 
 
 _LINE = 100
-#: Characters in which names are checked.
-_SHORT = 31
 #: Functions of C that compilers know.
 _TAKEN = _LIBRARY | {
     "abs", "ceil", "exp", "fabs", "floor", "log", "memcpy", "memset", "pow", "round", "sqrt",
@@ -98,8 +96,7 @@ class Program:
         self, name: str, number: str = "double", libm: Sequence[str] = (),
         taken: Sequence[str] = (),
     ) -> None:  # fmt: skip
-        short = name[:_SHORT]
-        if not name.isidentifier() or c_identifier(short) != short or name in _TAKEN:
+        if not is_free_name(name) or name in _TAKEN:
             raise ValueError(
                 f"name must be a name in C (letters, digits, _) that has no meaning there, got "
                 f"{name!r}"
@@ -311,8 +308,8 @@ class Program:
         if name not in self.libm:
             definition.refuse(
                 node,
-                f"calls math.{name}, which C99 has in its mathematical library only (-lm); allow "
-                f"it with libm=({name!r},)",
+                f"calls math.{name}, which C99 has in its mathematical library only (-lm); "
+                f"an exported header does without it, `compiled_c` takes libm=({name!r},)",
             )
         self.needs.add(name)
         return name + ("f" if self.number == "float" else "")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 import linecache
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -118,12 +119,20 @@ def definition_of(function: FunctionType) -> Definition:
     for node, candidate in _functions(text, code.co_filename):
         if _is(candidate, code):
             return Definition(function, node, code.co_filename)
+    trouble = "has changed since it was imported" if text else "is not in a file"
+    remedy = "C code is written from the source"
+    if text and code.co_name == "<lambda>" and not _has_columns(code):
+        trouble = "cannot be told from other lambdas of its line"
+        remedy = "start Python without -X no_debug_ranges, or name the function with def"
     raise TranslationError(
-        f"the source of the function {readable_name(function)} "
-        + ("has changed since it was imported" if text else "is not in a file")
-        + "; C code is written from the source",
+        f"the source of the function {readable_name(function)} {trouble}; {remedy}",
         Location(code.co_filename, code.co_firstlineno, 1),
     )
+
+
+def _has_columns(code: CodeType) -> bool:
+    """Whether the columns of instructions are kept, which an option of Python omits."""
+    return any(column is not None for _, _, column, _ in code.co_positions())
 
 
 def _is(candidate: CodeType, code: CodeType) -> bool:
@@ -144,6 +153,7 @@ def _functions(text: str, file: str) -> list[tuple[ast.FunctionDef | ast.Lambda,
         tree = ast.parse(text, file)
     except SyntaxError:
         return []
+    lambdas = Counter(node.lineno for node in ast.walk(tree) if isinstance(node, ast.Lambda))
     codes: dict[tuple[int, str], list[CodeType]] = {}
     for code in _all_codes(compile(text, file, "exec", dont_inherit=True)):
         codes.setdefault((code.co_firstlineno, code.co_name), []).append(code)
@@ -154,7 +164,9 @@ def _functions(text: str, file: str) -> list[tuple[ast.FunctionDef | ast.Lambda,
             found += [(node, code) for code in codes.get((first, node.name), ())]
         elif isinstance(node, ast.Lambda):
             same_line = codes.get((node.lineno, "<lambda>"), ())
-            found += [(node, code) for code in same_line if _inside(node, code)]
+            # Without columns, one that is alone on its line.
+            alone = lambdas[node.lineno] == len(same_line) == 1
+            found += [(node, code) for code in same_line if alone or _inside(node, code)]
     return found
 
 
