@@ -20,6 +20,7 @@ from stonesoup.measures import Mahalanobis
 from stonesoup.models.measurement.linear import LinearGaussian
 from stonesoup.models.measurement.nonlinear import (
     Cartesian2DToBearing,
+    CartesianToBearingRange,
     CombinedReversibleGaussianMeasurementModel,
 )
 from stonesoup.models.transition.linear import (
@@ -465,7 +466,12 @@ def test_times_are_checked():
         ([1.0, 2.0], linear((0, 2), 6), "states have 6 places, those of the mappings 4"),
         ([1.0, np.nan], MODEL, "is not finite; leave it out"),
         ([1.0, np.inf], MODEL, "is not finite; leave it out"),
-        ([1.0, 2.0], LinearGaussian(4, (0, 2), np.zeros((2, 2))), "sigma must be positive"),
+        ([1.0, 2.0], LinearGaussian(4, (0, 2), np.zeros((2, 2))), "place 0 .* must be positive"),
+        (
+            [0.1, 9.0],
+            CartesianToBearingRange(4, mapping=(0, 1), noise_covar=np.eye(2)),
+            "place 2 of position_mapping has the variance 0, .* a mapping with the places",
+        ),
     ],
 )
 def test_detections_that_are_no_positions_are_refused(seen, model, message):

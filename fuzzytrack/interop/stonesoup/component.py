@@ -51,4 +51,13 @@ class GainScheduledComponent(Base):
     def _position_of(self, detection: Any) -> tuple[Array, Array]:
         """Position of a detection, and its covariance; the component may have a model."""
         layout = self._recursion.layout
-        return position_of(detection, self.measurement_model, layout.position, layout.ndim)
+        model = self.measurement_model
+        position, noise = position_of(detection, model, layout.position, layout.ndim)
+        for place, variance in zip(layout.position, noise.diagonal(), strict=True):
+            if not variance > 0.0:
+                raise ValueError(
+                    f"measurement_model: place {place} of position_mapping has the variance "
+                    f"{variance:g}, which must be positive; give a noise_covar above 0, and a "
+                    "mapping with the places of position_mapping"
+                )
+        return position, noise
