@@ -20,7 +20,7 @@ from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.reader import FORMAT_VERSION
 from fuzzytrack.fuzzy.rulebase import Conditions, Consequent, Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.variable import Universe, Variable
-from fuzzytrack.yamltree import Document, quoted
+from fuzzytrack.yamltree import MAX_BYTES, Document, quoted
 
 __all__ = [
     "SCHEMA_LINE", "cell_text", "consequents_text", "dumps_rulebase", "read_cell", "save_rulebase",
@@ -58,9 +58,15 @@ def dumps_rulebase(rules: RuleBase) -> str:
     ------
     RuleBaseError
         If a file may not contain the rule base: a name with blanks, sets out of order, a range of
-        an input without a rule. Names which, with the place in the text.
+        an input without a rule, a text that is too long to be read. Names which, with the place in
+        the text.
     """
     text = "\n".join(_lines(rules)) + "\n"
+    if len(text.encode()) > MAX_BYTES:
+        raise RuleBaseError(
+            f"{rules.name}: has more than {MAX_BYTES // 1024} KiB as YAML, the most that is read; "
+            "keep it in another format"
+        )
     if loads_rulebase(text, f"<{rules.name}>") != rules:
         raise RuleBaseError(f"rule base {quoted(rules.name)} cannot be written as YAML")
     return text

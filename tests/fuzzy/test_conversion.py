@@ -127,3 +127,11 @@ def test_sets_whose_peak_is_out_of_range_are_converted():
     assert loads_rulebase(dumps_rulebase(rules)) == rules
     with pytest.raises(RuleBaseError, match="'generous' lies outside the universe of tip"):
         dumps_rulebase(loads_fis(text.replace("[20 25 30]", "[31 35 40]"), "x"))
+
+
+def test_what_is_too_long_for_yaml_is_said():
+    text = translated(load_rulebase("tipper"), "x.fis").text
+    sets = "".join(f"MF{k}='s':'trimf',[0 5 {k}]\n" for k in range(4, 4001))
+    long = text.replace("NumMFs=3\n", "", 1).replace("\n[Input2]", f"{sets}\n[Input2]")
+    with pytest.raises(RuleBaseError, match="tipper: has more than 128 KiB as YAML"):
+        translated(loads_fis(long.replace("[0 5 4]", "[0 5 5]"), "x"), "x.yaml")
