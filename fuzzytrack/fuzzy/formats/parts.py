@@ -13,7 +13,7 @@ import keyword
 import math
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from fuzzytrack.errors import Location, RuleBaseError
@@ -38,7 +38,7 @@ from fuzzytrack.yamltree import quoted
 
 __all__ = [
     "DEFAULT_GRID", "Condition", "Group", "RulePart", "SetPart", "System", "VariablePart",
-    "is_linear", "proper_name", "widened",
+    "is_linear", "widened",
 ]  # fmt: skip
 
 #: Points and grid of a variable of which a file says nothing: those of MATLAB.
@@ -146,33 +146,44 @@ class System:
         return _Assembly(self).rulebase()
 
 
-def proper_name(name: str, taken: Collection[str], *, of_set: bool) -> str:
-    """A name that a rule base may have, near to another name, and not among those taken.
+class _Names:
+    """Names that a rule base may have, each given once.
 
     Parameters
     ----------
-    name : str
-    taken : collection of str
-    of_set : bool
-        Whether it is that of a set, which may be any word; otherwise it is an identifier.
+    of_sets : bool
+        Whether they are those of sets, which may be any words; otherwise they are identifiers.
     """
-    name = unicodedata.normalize("NFKC", name.strip())
-    if of_set:
-        proper = re.sub(r"[@,\s\x00-\x1f\x7f-\x9f\u2028\u2029]", "_", name) or "set"
-        assert re.fullmatch(SET_NAME, proper)
-    else:
-        proper = re.sub(r"\W", "_", name) or "x"
-        if not proper.isidentifier() or keyword.iskeyword(proper):
-            proper = f"x_{proper}"
-        if not proper.isidentifier():
-            proper = "x"
-    proper = proper[:MAX_NAME]
-    for number in itertools.count(2):
-        if proper not in taken:
-            return proper
-        end = f"_{number}"
-        proper = proper.removesuffix(f"_{number - 1}")[: MAX_NAME - len(end)] + end
-    raise AssertionError
+
+    def __init__(self, *, of_sets: bool) -> None:
+        self.of_sets = of_sets
+        self.taken: set[str] = set()
+        # By name the next number of a namesake, so that thousands of them take no longer.
+        self.numbers: dict[str, int] = {}
+
+    def take(self, name: str) -> str:
+        """Name that is near to another name and was not taken before."""
+        stem = found = self._proper(name)
+        while found in self.taken:
+            number = self.numbers.get(stem, 2)
+            self.numbers[stem] = number + 1
+            end = f"_{number}"
+            found = stem[: MAX_NAME - len(end)] + end
+        self.taken.add(found)
+        return found
+
+    def _proper(self, name: str) -> str:
+        name = unicodedata.normalize("NFKC", name.strip())
+        if self.of_sets:
+            proper = re.sub(r"[@,\s\x00-\x1f\x7f-\x9f\u2028\u2029]", "_", name) or "set"
+            assert re.fullmatch(SET_NAME, proper)
+        else:
+            proper = re.sub(r"\W", "_", name) or "x"
+            if not proper.isidentifier() or keyword.iskeyword(proper):
+                proper = f"x_{proper}"
+            if not proper.isidentifier():
+                proper = "x"
+        return proper[:MAX_NAME]
 
 
 class _Sets:
@@ -182,14 +193,14 @@ class _Sets:
         self.part = part
         self.sets: list[FuzzySet] = []
         self.names: dict[object, str] = {}
+        self.free = _Names(of_sets=True)
         for index, each in enumerate(part.sets):
             self._add((index, (), 0), each.name, each.shape, each.parameters, each.place)
 
     def _add(
         self, key: object, name: str, shape: str, parameters: tuple[float, ...], place: Location
     ) -> str:
-        taken = [s.name for s in self.sets]
-        name = proper_name(name, taken, of_set=True)
+        name = self.free.take(name)
         with located(place):
             self.sets.append(FuzzySet(name, shape, parameters))
         self.names[key] = name
@@ -235,9 +246,8 @@ class _Assembly:
             raise RuleBaseError(
                 f"needs 1 to {MAX_RULES} rules, got {len(system.rules)}", system.place
             )
-        self.names: list[str] = []
-        for part in (*system.inputs, *system.outputs):
-            self.names.append(proper_name(part.name, self.names, of_set=False))
+        free = _Names(of_sets=False)
+        self.names = [free.take(part.name) for part in (*system.inputs, *system.outputs)]
         self.inputs = [_Sets(part) for part in system.inputs]
         self.outputs = [_Sets(part) for part in system.outputs]
 
