@@ -119,6 +119,7 @@ def test_what_is_read():
         HEATER.replace(" ", "\t").replace("room\ttemperature", "room temperature"),
         HEATER.replace("\n1 1, 3 (1) : 1", "\n# a rule\n1 1,3 (1):1 % when cold"),
         HEATER.replace("much, up", "much,\tup"),
+        HEATER.replace("=2\n", "=2.000\n").replace(" (1) : 1", ".000 (1.000) : 1.000"),
         HEATER.replace("'", '"'),
         HEATER[HEATER.index("[Input2]") : HEATER.index("[Output1]")]
         + HEATER.replace(HEATER[HEATER.index("[Input2]") : HEATER.index("[Output1]")], ""),
@@ -130,11 +131,25 @@ def test_the_same_file_in_other_clothes(text):
     assert loads_fis(text.encode("utf-8"), "x") == loads_fis(HEATER, "heater.fis")
 
 
+def test_thousands_of_namesakes_have_names_of_their_own():
+    sets = "".join(f"MF{k}='s':'trimf',[0 0 40]\n" for k in range(1, 8001))
+    old = HEATER[HEATER.index("NumMFs=3") : HEATER.index("\n[Rules]")]
+    names = loads_fis(HEATER.replace(old, f"NumMFs=8000\n{sets}"), "x").outputs[0].set_names
+    assert names == ("s", *(f"s_{k}" for k in range(2, 8001)))
+
+
 def test_other_encodings():
     text = changed(("'heater'", "'Öfen'"))
     assert loads_fis(text.encode("latin-1"), "x").name == "Öfen"
     with pytest.raises(RuleBaseError, match="x:1:1: the file is UTF-16"):
         loads_fis(text.encode("utf-16"), "x")
+
+
+def test_allowed_words_are_listed_once():
+    for old in ("'gaussmf'", "AndMethod='min'"):
+        with pytest.raises(RuleBaseError) as found:
+            loads_fis(changed((old, old.replace("m", "q"))), "x")
+        assert str(found.value).count("allowed: ") == 1
 
 
 @pytest.mark.parametrize(
@@ -171,7 +186,10 @@ def test_other_encodings():
         ("Name='change'", "Name=change", "23:6: Name must be a text in quotation marks"),
         ("Name='change'", "Name", "23:1: 'Name' is not written as Key=value"),
         ("Range=[-2 2]", "Range=[-2 2]\nRange=[-2 2]", "25:1: Range is given twice"),
-        ("Name='heater'", "Name='hea\x07ter'", "3:10: the character U.0007"),
+        ("Name='heater'", "Name='hea\x07ter'", "3:10: the character U.0007 may not be in a text"),
+        ("OrMethod='max'\n", "", "2:1: OrMethod is missing .* add a line OrMethod="),
+        ("3 (1) : 1\n", "3 (1) : 1.5\n", "38:14: the connection must be"),
+        ("NumRules=4", "NumRules=4.5", "8:10: NumRules must be a whole number"),
     ],
 )
 def test_what_has_no_counterpart_or_is_broken_is_named_with_its_place(old, new, said):

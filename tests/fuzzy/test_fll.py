@@ -172,8 +172,9 @@ def test_the_same_file_in_other_clothes(text):
         (
             "if level is low",
             "if levl is low",
-            "34:12: unknown variable 'levl'; did you",
+            "34:12: unknown variable 'levl'; did you mean 'level'\\? allowed: [a-z, ]*$",
         ),
+        ("InputVariable: inflow", "InputVariable: level", "a second variable 'level'; rename one"),
         ("if level is low", "level is low", "34:9: expected 'if', got 'level'"),
         ("weak then opening is shut", "weak", "34:43: expected 'then', got 'the end'"),
         ("opening is shut", "opening is", "34:59: a term is missing at the end of the rule"),
@@ -281,5 +282,5 @@ def test_names_that_the_language_lacks_are_changed_and_said():
     assert "'and' of opening is named 'and_'" in found.notes
     assert "'ze-1' of inflow is named 'ze_1'" in found.notes
     assert loads_fll(found.text, "x").outputs[0].set_names == ("and_", "full")
-    with pytest.raises(RuleBaseError, match="the name 'größe' has no counterpart"):
+    with pytest.raises(RuleBaseError, match="the name 'größe' has no .*; rename the variable"):
         dumps_fll(loads_rulebase(text.replace("inflow", "größe")))

@@ -35,6 +35,7 @@ _ENTRY = re.compile(r"([A-Za-z][A-Za-z0-9_]*)\s*=\s*(.*)")
 _TEXT = re.compile(r"'((?:[^']|'')*)'|\"((?:[^\"]|\"\")*)\"")
 _LIST = re.compile(r"\[([^\[\]]*)\]")
 _RULE = re.compile(r"([^,()]*),([^,()]*)\(([^()]*)\)\s*:\s*(\S+)")
+_WHOLE = re.compile(r"([0-9]{1,6})(?:\.0*)?")
 _WORD = re.compile(r"[^\s,;]+")
 _INDEX = re.compile(r"([-+]?)([0-9]{1,6})(?:\.([0-9]{1,6}))?")
 
@@ -135,7 +136,9 @@ class _FisReader:
     def _get(self, section: str, key: str) -> _Entry:
         entry = self.sections[section].get(key.lower())
         if entry is None:
-            raise self.source.error(self.starts[section], 1, f"{key} is missing in this section")
+            raise self.source.error(
+                self.starts[section], 1, f"{key} is missing in this section; add a line {key}=…"
+            )
         return entry
 
     def _place(self, entry: _Entry, offset: int = 0) -> Location:
@@ -155,11 +158,12 @@ class _FisReader:
         entry = self.sections[section].get(key.lower())
         if entry is None:
             return None
-        if not re.fullmatch(r"[0-9]{1,6}", entry.text):
+        found = _WHOLE.fullmatch(entry.text)
+        if found is None:
             raise RuleBaseError(
                 f"{key} must be a whole number, got {quoted(entry.text)}", self._place(entry)
             )
-        return int(entry.text)
+        return int(found[1])
 
     def _numbers(
         self, entry: _Entry, text: str, offset: int, what: str, *, infinite: bool = False
@@ -180,8 +184,7 @@ class _FisReader:
         word = self._text(entry, key).strip().lower()
         if word not in allowed:
             raise RuleBaseError(
-                f"{what} {quoted(word)} has no counterpart{suggestion(word, tuple(allowed))}; "
-                f"allowed: {', '.join(allowed)}",
+                f"{what} {quoted(word)} has no counterpart{suggestion(word, tuple(allowed))}",
                 self._place(entry),
             )
         return allowed[word]
@@ -325,7 +328,7 @@ class _FisReader:
         if shape not in words.SHAPES:
             raise RuleBaseError(
                 f"the shape {quoted(shape)} has no counterpart"
-                f"{suggestion(shape, tuple(words.SHAPES))}; allowed: {', '.join(words.SHAPES)}",
+                f"{suggestion(shape, tuple(words.SHAPES))}",
                 place,
             )
         shoulder = _shoulder(shape, numbers)
@@ -379,16 +382,16 @@ class _FisReader:
         weight = self.source.number(
             found.group(3).strip(), self._place(entry, found.start(3)), "weight"
         )
-        connection = found.group(4)
-        if connection not in ("1", "2"):
+        connection = _WHOLE.fullmatch(found.group(4))
+        if connection is None or int(connection[1]) not in (1, 2):
             raise RuleBaseError(
-                f"the connection must be 1 (and) or 2 (or), got {quoted(connection)}",
+                f"the connection must be 1 (and) or 2 (or), got {quoted(found.group(4))}",
                 self._place(entry, found.start(4)),
             )
         if not asked or not concluded:
             what = "condition" if not asked else "conclusion"
             raise RuleBaseError(f"a rule without a {what} has no counterpart", place)
-        groups = tuple((c,) for c in asked) if connection == "2" else (tuple(asked),)
+        groups = tuple((c,) for c in asked) if int(connection[1]) == 2 else (tuple(asked),)
         with located(place):
             return RulePart(groups, tuple(concluded), weight, place)
 

@@ -56,7 +56,7 @@ class _FisWriter:
         self.rules = rules
         algebras = {rules.operators_of(output) for output in rules.outputs}
         if len(algebras) > 1:
-            raise self._lacks("outputs with different operators")
+            raise self._lacks("an output with operators of its own")
         (self.operators,) = algebras
         self.sugeno = self.operators.defuzzification == "weighted-centers"
         self.inputs = {v.name: BaseSets(v) for v in rules.inputs}

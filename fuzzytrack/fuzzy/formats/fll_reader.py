@@ -106,6 +106,7 @@ class _FllReader:
         self.inputs = [self._input(b) for b in self._of_kind("InputVariable")]
         self.outputs = [self._output(b) for b in self._of_kind("OutputVariable")]
         self.rule_blocks = self._of_kind("RuleBlock")
+        self._check_names()
 
     # ---------------------------------------------------------------- lines
 
@@ -128,8 +129,7 @@ class _FllReader:
         if key not in _KEYS[block.kind]:
             allowed = _KEYS[block.kind]
             raise RuleBaseError(
-                f"{block.kind}: unknown key {quoted(key)}{suggestion(key, allowed)}; allowed: "
-                f"{', '.join(allowed)}",
+                f"{block.kind}: unknown key {quoted(key)}{suggestion(key, allowed)}",
                 place,
             )
         value = _Value(text, number, start + found.start(2))
@@ -151,6 +151,16 @@ class _FllReader:
                 )
         return found
 
+    def _check_names(self) -> None:
+        """Rules name variables, so that each needs a name of its own."""
+        names: set[str] = set()
+        for part in (*self.inputs, *self.outputs):
+            if part.name in names:
+                raise RuleBaseError(
+                    f"a second variable {quoted(part.name)}; rename one of them", part.place
+                )
+            names.add(part.name)
+
     def _place(self, value: _Value, offset: int = 0) -> Location:
         return self.source.place(value.line, value.column + offset)
 
@@ -169,8 +179,7 @@ class _FllReader:
         word = value.text.split()[0] if value.text.split() else ""
         if word not in allowed or word != value.text:
             raise RuleBaseError(
-                f"{what} {quoted(value.text)} has no counterpart"
-                f"{suggestion(word, tuple(allowed))}; allowed: {', '.join(allowed)}",
+                f"{what} {quoted(value.text)} has no counterpart{suggestion(word, tuple(allowed))}",
                 self._place(value),
             )
         return allowed[word]
@@ -252,8 +261,7 @@ class _FllReader:
         if word not in words.DEFUZZIFIERS:
             allowed = (*words.DEFUZZIFIERS, "WeightedAverage")
             raise RuleBaseError(
-                f"the defuzzifier {quoted(word)} has no counterpart{suggestion(word, allowed)}; "
-                f"allowed: {', '.join(allowed)}",
+                f"the defuzzifier {quoted(word)} has no counterpart{suggestion(word, allowed)}",
                 self._place(value),
             )
         if not more:
@@ -299,7 +307,7 @@ class _FllReader:
             allowed = (*words.TERMS, "Discrete")
             raise RuleBaseError(
                 f"{block.kind} {block.name}: the term {quoted(shape)} has no counterpart"
-                f"{suggestion(shape, allowed)}; allowed: {', '.join(allowed)}",
+                f"{suggestion(shape, allowed)}",
                 place,
             )
         term = words.TERMS[shape]

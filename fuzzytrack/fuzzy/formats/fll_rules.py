@@ -158,7 +158,7 @@ class RuleParser:
                     return self._of(number, variable, of_output)
         names = tuple(v.name for v in (*self.inputs, *self.outputs))
         raise RuleBaseError(
-            f"unknown variable {quoted(name)}{suggestion(name, names)}; one of {', '.join(names)}",
+            f"unknown variable {quoted(name)}{suggestion(name, names)}",
             here,
         )
 
@@ -185,6 +185,6 @@ class RuleParser:
                 return found
         names = tuple(v.name for v in self.outputs)
         raise RuleBaseError(
-            f"unknown output {quoted(name)}{suggestion(name, names)}; one of {', '.join(names)}",
+            f"unknown output {quoted(name)}{suggestion(name, names)}",
             here,
         )

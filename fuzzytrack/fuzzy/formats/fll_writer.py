@@ -78,7 +78,10 @@ class _FllWriter:
     def _set_names(self, variable: Variable, sets: BaseSets) -> list[str]:
         """Names of sets with the characters that the language has."""
         if not _NAME.fullmatch(variable.name) or variable.name in words.KEYWORDS:
-            raise self._lacks(f"the name {quoted(variable.name)}")
+            raise RuleBaseError(
+                f"{self.rules.name}: the name {quoted(variable.name)} has no counterpart in FLL; "
+                "rename the variable with letters from A to Z, digits and _, and no word of rules"
+            )
         found: list[str] = []
         for each in sets.sets:
             name = re.sub(r"[^A-Za-z0-9_.]", "_", each.name)

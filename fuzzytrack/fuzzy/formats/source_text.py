@@ -50,7 +50,11 @@ class SourceText:
             found = _FORBIDDEN.search(line)
             if found is not None:
                 code = ord(found.group())
-                raise self.error(number, found.start() + 1, f"the character U+{code:04X}")
+                raise self.error(
+                    number,
+                    found.start() + 1,
+                    f"the character U+{code:04X} may not be in a text; remove it, or give a text",
+                )
 
     def _decoded(self, text: bytes) -> str:
         if text[:2] in (b"\xff\xfe", b"\xfe\xff"):
