@@ -282,5 +282,5 @@ def test_names_that_the_language_lacks_are_changed_and_said():
     assert "'and' of opening is named 'and_'" in found.notes
     assert "'ze-1' of inflow is named 'ze_1'" in found.notes
     assert loads_fll(found.text, "x").outputs[0].set_names == ("and_", "full")
-    with pytest.raises(RuleBaseError, match="the name 'größe' has no .*; rename the variable"):
+    with pytest.raises(RuleBaseError, match=r"the name 'größe' has no .*; rename the variable"):
         dumps_fll(loads_rulebase(text.replace("inflow", "größe")))
