@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import subprocess
 
 import numpy as np
@@ -104,6 +105,26 @@ def test_what_has_no_formulas_needs_a_table():
     assert export_c(other, table=True, nodes=9, random=10).figures["nodes"] == [9, 13]
     with pytest.raises(ValueError, match=r"nodes: tipper is written as formulas; `table` writes"):
         export_c("tipper", nodes=9)
+
+
+@pytest.mark.parametrize("compiler", [name for name in ("g++", "clang++") if shutil.which(name)])
+def test_headers_in_a_program_of_cpp(compiler, tmp_path):
+    export_c("stiffness-damping", number="float", filter=True, random=100).write(tmp_path)
+    export_c("maneuver", filter=True, axes=1, random=100).write(tmp_path)
+    export_c("valve", number="q15", random=100).write(tmp_path)
+    (tmp_path / "all.cpp").write_text(
+        '#include "stiffness-damping.h"\n#include "maneuver.h"\n#include "valve.h"\n'
+        "int main()\n{\n    maneuver_filter_state track;\n    maneuver_filter_init(&track);\n"
+        "    const double plot[1] = { 3.0 }, sigma[1] = { 1.0 };\n"
+        "    const int status = maneuver_filter_step(&track, 0.0, plot, sigma);\n"
+        "    const bool right = track.position[0] == 3.0 && valve_infer(0).opening < 32767;\n"
+        "    return right ? status : 1;\n"
+        "}\n"
+    )
+    # Compound literals are an extension of these compilers.
+    command = [compiler, "-std=c++17", "-Wall", "-Wextra", "-Wno-c99-extensions", "-Werror"]
+    subprocess.run([*command, "all.cpp", "-o", "all"], cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "all"], check=False).returncode == 0
 
 
 @compiled

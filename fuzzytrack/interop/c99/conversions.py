@@ -14,6 +14,8 @@ from fuzzytrack.interop.c99.program import Program
 from fuzzytrack.interop.c99.python_source import Definition
 from fuzzytrack.interop.c99.values import (
     ATOM,
+    BITWISE,
+    CHOICE,
     EQUAL,
     NUMBER,
     TRUTH,
@@ -196,10 +198,16 @@ class ConversionWriter:
         made = self.converted(node, value, form)
         if isinstance(made, Row) and made.whole:
             return made.whole
-        texts = [self.scalar(node, leaf).text for leaf in flat(made)]
+        texts = [_member(self.scalar(node, leaf)) for leaf in flat(made)]
         kind = self.program.struct(form)
         braces = ("{{", "}}") if self.program.struct_is_array(form) else ("{", "}")
         return f"({kind}){braces[0]}{', '.join(texts)}{braces[1]}"
+
+
+def _member(value: Scalar) -> str:
+    """A value as a member of a struct: C++ does not take an integer for a truth value there."""
+    integer = value.kind == TRUTH and value.rank in (BITWISE, CHOICE)
+    return f"(bool)({value.text})" if integer else value.text
 
 
 def flat(value: Value) -> list[Value]:
