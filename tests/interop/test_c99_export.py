@@ -110,7 +110,9 @@ def test_what_has_no_formulas_needs_a_table():
 @pytest.mark.parametrize("compiler", [name for name in ("g++", "clang++") if shutil.which(name)])
 def test_headers_in_a_program_of_cpp(compiler, tmp_path):
     export_c("stiffness-damping", number="float", filter=True, random=100).write(tmp_path)
-    export_c("maneuver", filter=True, axes=1, random=100).write(tmp_path)
+    made = export_c("maneuver", filter=True, axes=1, random=100)
+    assert "_step: 1 axis, plots in m" in made.header
+    made.write(tmp_path)
     export_c("valve", number="q15", random=100).write(tmp_path)
     (tmp_path / "all.cpp").write_text(
         '#include "stiffness-damping.h"\n#include "maneuver.h"\n#include "valve.h"\n'

@@ -111,14 +111,14 @@ def test_streaming_and_batches_agree(maneuver):
 @pytest.mark.parametrize(
     ("plot", "time", "sigma", "words"),
     [
-        ((math.inf, 0.0), 2.0, 1.0, "infinite"),
-        ((0.0, -math.inf), 2.0, 1.0, "infinite"),
-        ((0.0, 0.0), 1.0, 1.0, "not later"),
-        ((0.0, 0.0), math.nan, 1.0, "not finite"),
-        ((0.0, 0.0), math.inf, 1.0, "not finite"),
-        ((0.0, 0.0), 2.0, math.nan, "standard deviation"),
-        ((0.0, 0.0), 2.0, 0.0, "standard deviation"),
-        ((0.0, 0.0), 2.0, math.inf, "standard deviation"),
+        ((math.inf, 0.0), 2.0, 1.0, "^z: at index 0: a coordinate is infinite"),
+        ((0.0, -math.inf), 2.0, 1.0, "^z: at index 0: a coordinate is infinite"),
+        ((0.0, 0.0), 1.0, 1.0, "^t: at index 0: .*not later"),
+        ((0.0, 0.0), math.nan, 1.0, "^t: .*not finite"),
+        ((0.0, 0.0), math.inf, 1.0, "^t: .*not finite"),
+        ((0.0, 0.0), 2.0, math.nan, "^sigma: .*standard deviation"),
+        ((0.0, 0.0), 2.0, 0.0, "^sigma: .*standard deviation"),
+        ((0.0, 0.0), 2.0, math.inf, "^sigma: .*standard deviation"),
     ],
 )
 def test_a_step_refuses_what_the_library_refuses(maneuver, plot, time, sigma, words):

@@ -14,6 +14,7 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.interop.c99.build import built
 from fuzzytrack.interop.c99.compiled import DTYPES, whole_source
 from fuzzytrack.interop.c99.filter import STATUS, FilterTranslation, translated_filter
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 from fuzzytrack.schedulers.base import GainScheduler
 from fuzzytrack.trackers.alpha_beta import AlphaBetaTracker
@@ -120,7 +121,8 @@ class CompiledFilter:
         plots = np.asarray(z, dtype=dtype)
         if (plots.shape[-1] if plots.ndim > 1 else 1) != made.axes or plots.ndim > 3:
             raise ValueError(
-                f"z: shape {plots.shape} does not fit a filter of {made.axes} axes; (n_steps, "
+                f"z: shape {plots.shape} does not fit a filter of "
+                f"{counted(made.axes, 'axis', 'axes')}; (n_steps, "
                 f"{made.axes}) or (n_steps, tracks, {made.axes}) does"
             )
         steps, tracks = len(plots), plots.shape[1] if plots.ndim == 3 else 1
@@ -143,8 +145,9 @@ class CompiledFilter:
         )  # fmt: skip
         if status:
             at = divmod(failed.value, tracks)
-            words = list(STATUS.values())[status]
-            raise DataError(f"z: at index {at if plots.ndim == 3 else at[0]}: {words}")
+            name, words = list(STATUS.items())[status]
+            argument = {"TIME": "t", "SIGMA": "sigma"}.get(name, "z")
+            raise DataError(f"{argument}: at index {at if plots.ndim == 3 else at[0]}: {words}")
         return FilterRun(**found)
 
     def _output(self, name: str, plots: NDArray[Any], wanted: bool) -> NDArray[Any]:

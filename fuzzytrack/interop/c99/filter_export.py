@@ -14,6 +14,7 @@ from fuzzytrack.interop.c99.c_text import literal
 from fuzzytrack.interop.c99.filter import FilterTranslation, translated_filter
 from fuzzytrack.interop.c99.number_types import NumberType
 from fuzzytrack.interop.c99.selftest import Check, check_lines, constant_rows
+from fuzzytrack.plurals import counted
 from fuzzytrack.reprs import summary
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 
@@ -73,7 +74,8 @@ class FilterExport:
         yield "", ""
         yield (
             "Filter",
-            f"{made.name}_init, {made.name}_step: {made.axes} axes, plots in m {sigma} standard "
+            f"{made.name}_init, {made.name}_step: "
+            f"{counted(made.axes, 'axis', 'axes')}, plots in m {sigma} standard "
             "deviations, times in s; a coordinate that is NaN is missed",
         )
         position, velocity = self.bounds
