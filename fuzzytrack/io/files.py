@@ -39,7 +39,7 @@ def check_output(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Path:
     OSError
         If its folder does not exist or cannot be written to, or the path is no ordinary file.
     """
-    target = Path(path).resolve()
+    target = _followed(path)
     for source in inputs:
         if target.exists() and os.path.exists(source) and os.path.samefile(source, target):
             raise DataError(f"{path}: is the input; write to another file")
@@ -71,13 +71,22 @@ def check_output_folder(path: PathLike) -> Path:
     OSError
         If it cannot be made, or is a file.
     """
-    target = Path(path).resolve()
+    target = _followed(path)
     if target.exists() and not target.is_dir():
         raise NotADirectoryError(None, "is not a folder", str(path))
     if target.is_dir() and any(target.iterdir()):
         raise DataError(f"{path}: holds files already; choose another folder")
     _check_parent(path, target)
     return target
+
+
+def _followed(path: PathLike) -> Path:
+    """Absolute path with symbolic links followed."""
+    try:
+        return Path(path).resolve()
+    except RuntimeError:
+        # So Python before 3.13 says that links point to one another.
+        raise OSError(None, "is a loop of symbolic links; remove it", str(path)) from None
 
 
 def _check_parent(path: PathLike, target: Path) -> None:

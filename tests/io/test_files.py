@@ -1,12 +1,13 @@
 import errno
 import os
+import sys
 
 import numpy as np
 import pytest
 from data_files import written
 
 from fuzzytrack.io import check_output, write_table
-from fuzzytrack.io.files import whole_file, whole_folder
+from fuzzytrack.io.files import check_output_folder, whole_file, whole_folder
 
 
 def test_replacing_keeps_the_mode_and_follows_links(tmp_path):
@@ -22,6 +23,15 @@ def test_replacing_keeps_the_mode_and_follows_links(tmp_path):
 def test_only_ordinary_files_are_written():
     with pytest.raises(OSError, match="ordinary file"):
         check_output("/dev/null")
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason="such links are replaced")
+def test_links_to_one_another_are_refused(tmp_path):
+    (tmp_path / "a.csv").symlink_to(tmp_path / "b.csv")
+    (tmp_path / "b.csv").symlink_to(tmp_path / "a.csv")
+    for check in (check_output, check_output_folder):
+        with pytest.raises(OSError, match="is a loop of symbolic links; remove it"):
+            check(tmp_path / "a.csv")
 
 
 def test_a_folder_that_cannot_be_written_to(tmp_path, monkeypatch):
