@@ -109,6 +109,7 @@ def test_truth_and_positions_without_velocity():
             ValueError,
             "have groups; give those of one recording",
         ),
+        (([1e18], ["a"], [[1.0, 2.0]]), ValueError, r"1e\+18 s after .* years 1 to 9999"),
     ],
 )
 def test_what_is_no_tracks_is_refused(given, error, message):
@@ -157,8 +158,8 @@ def test_times_with_a_zone():
 
 
 def test_no_track_is_no_position():
-    found = from_stonesoup(set())
-    assert found.position.shape == (0, 2)
+    for items in (set(), [Track([])]):
+        assert from_stonesoup(items).position.shape == (0, 2)
 
 
 def test_detections_become_scans():
@@ -212,6 +213,33 @@ def test_a_scan_tracker_runs_on_them():
             {},
             ValueError,
             r"position_mapping: \(0, 2\) does not fit the state vectors of a, which have 2 places",
+        ),
+        (
+            Track([State([1.0, 0.0, 2.0, 0.0], timestamp=at(0))]),
+            {"position_mapping": (0, 0)},
+            ValueError,
+            r"position_mapping: \(0, 0\) has a place twice",
+        ),
+        (
+            Track([State([1.0, 0.0, 2.0, 0.0], timestamp=at(0))]),
+            {"epoch": datetime(2030, 1, 1, tzinfo=UTC)},
+            ValueError,
+            "epoch: 2030-01-01 00:00:00.00:00 has a time zone, but",
+        ),
+        (
+            Track([State([1.0, 0.0, 2.0, 0.0])]),
+            {},
+            ValueError,
+            "items: a state or detection has no timestamp",
+        ),
+        (
+            [
+                Detection([1.0, 2.0], timestamp=when, measurement_model=MODEL)
+                for when in (None, at(0))
+            ],
+            {},
+            ValueError,
+            "items: a state or detection has no timestamp",
         ),
         ([3], {}, TypeError, "items: int; expected tracks and true paths only"),
         ([(1, 2, 3)], {}, TypeError, "a mixture of detections and pairs"),

@@ -63,8 +63,8 @@ def from_stonesoup(
     TypeError
         If there is anything else among the items.
     ValueError
-        If a mapping does not fit the states, or a detection is no position, or has another number
-        of axes than two.
+        If a mapping does not fit the states, a timestamp is missing or lacks the time zone of
+        `epoch`, or a detection is no position, or has another number of axes than two.
 
     Examples
     --------
@@ -98,10 +98,17 @@ def _positions(
     velocity: Sequence[int] | None,
     epoch: datetime,
 ) -> Positions:
-    rows = [(track.id, state) for track in tracks for state in track.last_timestamp_generator()]
+    rows = [
+        (track.id, state)
+        for track in tracks
+        if len(track)
+        for state in track.last_timestamp_generator()
+    ]
     vectors = [np.asarray(state.state_vector, dtype=np.float64).ravel() for _, state in rows]
 
     def chosen(name: str, places: Sequence[int]) -> Array:
+        if len(set(places)) < len(places):
+            raise ValueError(f"{name}: {tuple(places)} has a place twice; give one for each axis")
         for (id_, _), vector in zip(rows, vectors, strict=True):
             if not all(-1 < place < len(vector) for place in places):
                 raise ValueError(
@@ -127,7 +134,7 @@ def _scans(items: Sequence[Any], position: Sequence[int], model: Any, epoch: dat
             f"position_mapping: {tuple(position)} has {len(position)} places; scans have two axes"
         )
     first = 0
-    for when, detections in _by_time(items):
+    for when, detections in _by_time(items, epoch):
         plots = [position_of(each, model, position) for each in detections]
         times = [_seconds(each.timestamp or when, epoch) for each in detections]
         noise = np.array([covar[np.triu_indices(2)] for _, covar in plots]).reshape(-1, 3)
@@ -141,11 +148,11 @@ def _scans(items: Sequence[Any], position: Sequence[int], model: Any, epoch: dat
         first += len(plots)
 
 
-def _by_time(items: Sequence[Any]) -> Iterator[tuple[datetime, list[Any]]]:
+def _by_time(items: Sequence[Any], epoch: datetime) -> Iterator[tuple[datetime, list[Any]]]:
     """Detections of each scan, in an order that does not depend on that of sets."""
     pairs: Iterable[tuple[datetime, Any]]
     if all(isinstance(each, Detection) for each in items):
-        times = sorted({each.timestamp for each in items})
+        times = sorted({each.timestamp for each in items}, key=lambda when: _seconds(when, epoch))
         pairs = [(when, [each for each in items if each.timestamp == when]) for when in times]
     elif all(isinstance(each, tuple) and len(each) == 2 for each in items):
         pairs = items
@@ -184,7 +191,7 @@ def to_stonesoup(
     Raises
     ------
     TypeError, ValueError
-        If `tracks` is nothing of the kind.
+        If `tracks` is nothing of the kind, or a time is not within the years 1 to 9999.
 
     Examples
     --------
@@ -200,7 +207,7 @@ def to_stonesoup(
     deviations = _deviations(tracks, found)
     made: dict[Any, list[State]] = {}
     for row in np.argsort(found.time, kind="stable").tolist():
-        vector, when = _vector(found, row), epoch + timedelta(seconds=float(found.time[row]))
+        vector, when = _vector(found, row), _timestamp(float(found.time[row]), epoch)
         if truth:
             state = GroundTruthState(vector, timestamp=when)
         elif deviations is not None:
@@ -288,7 +295,24 @@ def _vector(found: Positions, row: int) -> Any:
     return StateVector(np.stack([found.position[row], found.velocity[row]], axis=-1).ravel())
 
 
-def _seconds(when: datetime, epoch: datetime) -> float:
+def _seconds(when: datetime | None, epoch: datetime) -> float:
+    if when is None:
+        raise ValueError("items: a state or detection has no timestamp; give each of them one")
+    if when.tzinfo is None and epoch.tzinfo is not None:
+        raise ValueError(
+            f"epoch: {epoch} has a time zone, but {when} among the items has none; give an epoch "
+            "without one"
+        )
     if when.tzinfo is not None and epoch.tzinfo is None:
         epoch = epoch.replace(tzinfo=UTC)
     return (when - epoch).total_seconds()
+
+
+def _timestamp(seconds: float, epoch: datetime) -> datetime:
+    try:
+        return epoch + timedelta(seconds=seconds)
+    except OverflowError:
+        raise ValueError(
+            f"tracks: the time {seconds:g} s after {epoch} is not within the years 1 to 9999; give "
+            "times in seconds"
+        ) from None
