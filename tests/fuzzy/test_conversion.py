@@ -82,6 +82,24 @@ def test_trackers_take_such_files(tmp_path):
     np.testing.assert_allclose(first.filtered, second.filtered, rtol=0, atol=1e-12)
 
 
+def test_a_line_lets_a_file_schedule_gains(tmp_path):
+    text = translated(load_rulebase("omega-schedule"), "x.fis").text
+    kept = [each for each in text.splitlines() if "% fuzzytrack" not in each]
+    settings = '{"normalization": "smoothed", "rho": "0.774", "gains": "kalata"}'
+    path = tmp_path / "mine.fis"
+    path.write_text("\n".join(kept), encoding="utf-8")
+    with pytest.raises(RuleBaseError, match="no scheduler setting 'normalization'"):
+        ft.AlphaBetaTracker(str(path))
+    path.write_text("\n".join([f"% fuzzytrack scheduler {settings}", *kept]), encoding="utf-8")
+    x = np.cumsum(np.random.default_rng(1).normal(5.0, 1.0, 40))
+    first = ft.AlphaBetaTracker(str(path)).run(np.arange(40.0), x, sigma=1.0)
+    there = dumps_rulebase(load_rulebase("omega-schedule"))
+    assert ", opening: growing-memory" in there
+    other = loads_rulebase(there.replace(", opening: growing-memory", ""))
+    second = ft.AlphaBetaTracker(ft.FuzzyScheduler(other)).run(np.arange(40.0), x, sigma=1.0)
+    np.testing.assert_allclose(first.filtered, second.filtered, rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

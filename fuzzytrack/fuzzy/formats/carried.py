@@ -154,7 +154,7 @@ class Carried:
         """Settings of a gain scheduler."""
         found = self.parts.get("scheduler", {})
         if not all(isinstance(value, str) for value in found.values()):
-            raise self.error("scheduler", "settings are texts")
+            raise self.error("scheduler", 'settings are texts, such as {"rho": "0.774"}')
         place = self.places.get("scheduler")
         return tuple((Word(key, place), Word(value, place)) for key, value in found.items())
 
