@@ -139,6 +139,11 @@ def test_the_same_file_in_other_clothes(text):
         ("range: 0.000 2.000", "range: -inf inf", "7:10: range: '-inf' must be a finite number"),
         ("Ramp 1.000 0.500", "Ramp 1.000", "9:13: Ramp takes start end as finite numbers"),
         ("Ramp 1.000 0.500", "Ramp 1.000 0.500 0.7", "9:13: Ramp of the height 0.7: only the"),
+        (
+            "Ramp 1.000 0.500",
+            "Ramp 1 1",
+            "9:13: Ramp takes start and end that differ, got '1 1'; a",
+        ),
         ("Ramp 1.000 0.500", "Function x", "9:13: a Function term has no counterpart"),
         (
             "Ramp 1.000 0.500",

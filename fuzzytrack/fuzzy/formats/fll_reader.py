@@ -319,6 +319,13 @@ class _FllReader:
             raise RuleBaseError(
                 f"{shape} takes {' '.join(term.names)} as finite numbers, got {quoted(rest)}", place
             )
+        if shape == "Ramp" and numbers[0] == numbers[1]:
+            # It is 0 everywhere in fuzzylite, whereas a step would be meant.
+            raise RuleBaseError(
+                f"Ramp takes start and end that differ, got {quoted(rest)}; a step is 'Binary "
+                f"{numbers[0]:g} inf' or 'Binary {numbers[0]:g} -inf'",
+                place,
+            )
         here, parameters = term.read(numbers)
         return SetPart(name, here, parameters, place)
 
