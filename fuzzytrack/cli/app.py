@@ -69,7 +69,7 @@ COMMANDS = {
     ),
     "rulebase": (
         "rulebase:rulebase",
-        "List, show, copy, check, explain, edit and export rule bases.",
+        "List, show, copy, check, explain, convert, edit and export rule bases.",
     ),
     "scanner": (
         "scanner:scanner",

@@ -78,8 +78,8 @@ def test_the_text_of_another_program_in_a_file_of_ours(fails, csv):
 @pytest.mark.parametrize(
     ("file", "message"),
     [
-        ("x.fis", "x.fis: a file of MATLAB's Fuzzy Logic Toolbox, which is not read; write"),
-        ("x.fll", "x.fll: a file of fuzzylite, which is not read; write its sets and rules"),
+        ("x.fis", "cannot read rule base 'x.fis': No such file"),
+        ("x.fcl", "x.fcl: a file of IEC 61131-7, which is not read; .yaml, .fis (MATLAB) and .fll"),
         ("x.yaml.gz", "x.yaml.gz: is compressed; unpack it, and name the file .yaml"),
     ],
 )
