@@ -78,7 +78,6 @@ def test_the_text_of_another_program_in_a_file_of_ours(fails, csv):
 @pytest.mark.parametrize(
     ("file", "message"),
     [
-        ("x.fis", "cannot read rule base 'x.fis': No such file"),
         ("x.fcl", "x.fcl: a file of IEC 61131-7, which is not read; .yaml, .fis (MATLAB) and .fll"),
         ("x.yaml.gz", "x.yaml.gz: is compressed; unpack it, and name the file .yaml"),
     ],
