@@ -63,8 +63,9 @@ def track(
         str | None,
         typer.Option(
             "--tracker",
-            metavar="NAME|FILE.yaml",
-            help=f"See `fuzzytrack trackers`. [default: {DEFAULT_TRACKER}]",
+            metavar="NAME|FILE",
+            help="See `fuzzytrack trackers`; or the file of a rule base: .yaml, .fis (MATLAB), .fll "
+            f"(fuzzylite). [default: {DEFAULT_TRACKER}]",
         ),
     ] = None,
     gate: options.Gate = "auto",
