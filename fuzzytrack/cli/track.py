@@ -64,8 +64,8 @@ def track(
         typer.Option(
             "--tracker",
             metavar="NAME|FILE",
-            help="See `fuzzytrack trackers`; or the file of a rule base: .yaml, .fis (MATLAB), .fll "
-            f"(fuzzylite). [default: {DEFAULT_TRACKER}]",
+            help="See `fuzzytrack trackers`; or the file of a rule base: .yaml, .fis (MATLAB), "
+            f".fll (fuzzylite). [default: {DEFAULT_TRACKER}]",
         ),
     ] = None,
     gate: options.Gate = "auto",
