@@ -251,6 +251,13 @@ def test_a_filter_passes_its_self_test(name, tmp_path):
         assert (done.returncode, done.stderr) == (0, ""), done.stdout
 
 
+@pytest.mark.untraced
+def test_the_track_of_a_self_test_raises_no_warnings_about_tracks():
+    # Its gains do not suit irregular times.
+    made = export_c("stiffness-damping-wide", number="float", filter=True, random=100)
+    assert made.figures["filter"]["errors"]["position"] > 0.1
+
+
 @compiled
 @pytest.mark.untraced
 def test_a_filter_of_floats_is_within_its_stated_error(tmp_path):

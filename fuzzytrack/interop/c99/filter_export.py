@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.errors import TrackWarning
 from fuzzytrack.interop.c99.c_program import CProgram, operations_in_words
 from fuzzytrack.interop.c99.c_text import literal
 from fuzzytrack.interop.c99.filter import FilterTranslation, translated_filter
@@ -186,14 +188,17 @@ def filter_export(
         raise ValueError("filter: there is none in integers; use the number double or float")
     made = translated_filter(tracker, name=name, axes=axes, number=number.name)
     times, plots, sigmas = _tracks(axes, number)
-    run = tracker.run(times, plots.astype(float), sigmas.astype(float))
-    bounds = (_DOUBLE, _DOUBLE)
-    if number.name == "float":
-        single = tracker.run(times, plots, sigmas, dtype=np.float32)
-        bounds = (
-            _four_times_apart(single.filtered, run.filtered),
-            _four_times_apart(single.velocity, run.velocity),
-        )
+    with warnings.catch_warnings():
+        # That gains do not suit the times of this track says nothing of a user's tracks.
+        warnings.simplefilter("ignore", TrackWarning)
+        run = tracker.run(times, plots.astype(float), sigmas.astype(float))
+        bounds = (_DOUBLE, _DOUBLE)
+        if number.name == "float":
+            single = tracker.run(times, plots, sigmas, dtype=np.float32)
+            bounds = (
+                _four_times_apart(single.filtered, run.filtered),
+                _four_times_apart(single.velocity, run.velocity),
+            )
     expected = np.concatenate([run.filtered[:, 0], run.velocity[:, 0]], axis=1)
     return FilterExport(made, number, bounds, times, plots[:, 0], sigmas[:, 0], expected)
 
