@@ -58,6 +58,20 @@ class Client:
         """The sentence with which a command is refused."""
         return self.wait(self.send(command, **arguments))["error"]
 
+    def ended_by(self, text):
+        """Send a text for which the server closes the socket; its code of closing, or None.
+
+        It may reset the connection while the text is still being sent, and the code is lost then.
+        """
+        from websockets.exceptions import ConnectionClosed
+
+        try:
+            self.socket.send(text)
+            answer = self.receive()
+        except ConnectionClosed as closed:
+            return closed.rcvd.code if closed.rcvd else None
+        return pytest.fail(f"the socket is still open, and answered {answer}")
+
     def job(self, number):
         """Events of a job, to its end."""
         found = [e["job"] for e in self.events if e.get("event") == "job"]
