@@ -185,7 +185,9 @@ class LiveRun:
         if not self._feed.begun and interrupted:
             self._say_why()
         elif not interrupted or self._file is None:
-            self._write(self._feed.finish())
+            answers = self._feed.finish()
+            # Without an answer the header is written alone, as for a file without tracks.
+            self._target.write(self._feed.header, answers)
         if self._file is not None:
             self._file.wait()
 

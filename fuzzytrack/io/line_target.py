@@ -29,9 +29,11 @@ class LineTarget:
     def __init__(self, path: str | None) -> None:
         self.path, self.written = path, 0
         self._needs_header = True
+        self._is_new = False
         self._descriptor = _STANDARD_OUTPUT
         if path is not None:
             check_output(path)
+            self._is_new = not os.path.exists(path)
             self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
             self.written = os.lseek(self._descriptor, 0, os.SEEK_END)
 
@@ -66,7 +68,7 @@ class LineTarget:
         header : bytes
             The first line of the file; empty if it has none.
         lines : bytes
-            Whole lines.
+            Whole lines; none at the end of a feed without answers.
 
         Raises
         ------
@@ -90,9 +92,11 @@ class LineTarget:
         self.written += len(lines)
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file; one that it has made is removed if `write` was never called."""
         if self.path is not None:
             os.close(self._descriptor)
+            if self._is_new and self._needs_header:
+                os.unlink(self.path)
 
     def _check_header(self, header: bytes) -> None:
         os.lseek(self._descriptor, 0, os.SEEK_SET)

@@ -109,6 +109,26 @@ def test_a_run_that_was_killed_within_a_scan_goes_on_from_its_state(way, csv, tm
         assert one.read() == other.read()
 
 
+def test_a_run_that_is_refused_leaves_no_file(tmp_path):
+    state, out = tmp_path / "state", tmp_path / "tracks.csv"
+    state.write_text("no state")
+    done = _follow(harbor(), "-o", str(out), "--state", str(state))
+    assert done.returncode == 2
+    assert done.stderr.endswith("is no state of a live run of scan; name another file\n")
+    assert not out.exists()
+    out.write_text("something else\n")
+    assert _follow(harbor(), "-o", str(out), "--state", str(state)).returncode == 2
+    assert out.read_text() == "something else\n"
+
+
+def test_a_feed_without_tracks_is_answered_with_the_header(run, csv, tmp_path):
+    text, out = "t,x,y\n0,1,2\n", tmp_path / "tracks.csv"
+    assert run("scan", csv(text), "--period", "2", "-o", out).exit_code == 0
+    done = _follow(text, "--period", "2")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == out.read_text() != ""
+
+
 def test_ctrl_c_within_a_scan_saves_it_and_ends_with_status_130(tmp_path):
     state = tmp_path / "state"
     with following("--scan", "scan", "--state", str(state)) as process:
