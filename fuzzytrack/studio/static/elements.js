@@ -1,5 +1,7 @@
 /* Elements of the page, made and named in one call. */
 
+import { goByArrows } from "./focus.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 
 /** An HTML element; attributes starting with "on" are listeners, others that are false are left out. */
@@ -39,6 +41,7 @@ export function select(name, options, value, change, attributes = {}) {
 export function choice(name, change) {
   const element = html("div", { class: "choice", role: "group", "aria-label": name });
   let known = "";
+  goByArrows(element);
 
   function show(options, value) {
     const wanted = JSON.stringify(options);

@@ -129,7 +129,9 @@ export function mount(element, app) {
   store.follow(["state", "point", "explanation"], ({ state, point, explanation }) => {
     const inputs = state?.rulebase?.inputs ?? [];
     showFields(inputs, point);
+    const cleared = !point && document.activeElement === clear;
     clear.hidden = !point;
+    if (cleared) fields.querySelector("input")?.focus();
     if (point && explanation) body.replaceChildren(...describe(state.rulebase, explanation, store));
     else body.replaceChildren(invitation(app));
   });

@@ -50,6 +50,7 @@ export function numberField(
   input.addEventListener("change", leave);
   input.addEventListener("keydown", (event) => {
     if (event.key === "Escape") {
+      event.preventDefault();
       input.value = written(current);
       input.setCustomValidity("");
       input.removeAttribute("aria-invalid");

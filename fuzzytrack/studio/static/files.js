@@ -3,6 +3,7 @@
 import { PALETTES } from "./colors.js";
 import { ask } from "./dialogs.js";
 import { html } from "./elements.js";
+import { enable, goByArrows, isEnabled } from "./focus.js";
 import { icon } from "./icons.js";
 import { menu } from "./menu.js";
 import { download } from "./pictures.js";
@@ -15,12 +16,14 @@ const KEYS = [
   ["Enter, F2 or a letter", "type in a cell; Enter keeps it, Esc leaves it"],
   ["+ and −", "next and previous set of the colored output in a cell; zoom of the surface"],
   ["Shift click on a word", "the rule says it besides the others, which share it"],
-  ["Arrows on a corner of a set", "move it, with Shift ten times as far; Esc takes it back"],
+  ["Arrows on a corner of a set, or on its square", "move the corner or the set, with Shift ten times as far; Esc takes it back"],
   ["Alt while dragging", "no snapping"],
   ["Shift Arrows on the surface", "move the explained point"],
   ["Ctrl Enter", "run the experiment"],
   ["Arrows on a way-point", "move it, with Shift ten times as far; Delete removes it"],
   ["+, − and 0 on a map", "zoom, and show the whole track; arrows move the map"],
+  ["Arrows and Space on a map", "while way-points are drawn or distances measured: move the cross, and click there"],
+  ["Esc in a field", "take back what was typed"],
   ["?", "these keys"],
 ];
 
@@ -45,8 +48,9 @@ export function mount(element, app) {
   );
 
   function tool(picture, title, run, text) {
-    const attributes = { type: "button", title, onclick: run, "aria-label": text ? null : title };
-    return html("button", { ...attributes, class: text ? null : "quiet" }, icon(picture), text);
+    const attributes = { type: "button", title, "aria-label": text ? null : title, class: text ? null : "quiet" };
+    const button = html("button", { ...attributes, onclick: () => isEnabled(button) && run() }, icon(picture), text);
+    return button;
   }
 
   // ------------------------------------------------------------------ open and save
@@ -98,7 +102,15 @@ export function mount(element, app) {
       oninput: () => {
         for (const one of list.children) one.hidden = !one.textContent.includes(filter.value);
       },
+      onkeydown: (event) => {
+        const first = [...list.children].find((one) => !one.hidden);
+        if (!first || !["Enter", "ArrowDown"].includes(event.key)) return;
+        event.preventDefault();
+        if (event.key === "Enter") first.click();
+        else first.focus();
+      },
     });
+    goByArrows(list);
     const warning = state.saved
       ? null
       : html("p", { class: "warning" }, "What is open has changes that are not saved. They stay in undo.");
@@ -184,8 +196,8 @@ export function mount(element, app) {
     name.textContent = state.name;
     saved.textContent = state.saved ? (state.file ? "saved" : "as shipped") : "not saved";
     saved.classList.toggle("changed", !state.saved);
-    undo.disabled = !state.undo;
-    redo.disabled = !state.redo;
+    enable(undo, state.undo);
+    enable(redo, state.redo);
     document.title = `${state.saved ? "" : "• "}${state.name} – fuzzytrack studio`;
   });
 

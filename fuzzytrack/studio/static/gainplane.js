@@ -1,6 +1,7 @@
 /* The plane of α and β: the stability triangle, gains that can be reached, gains of the last run. */
 
 import { choice, html, svg } from "./elements.js";
+import { enable, isEnabled } from "./focus.js";
 import { shown, span, ticks } from "./numbers.js";
 import { pictureMenu, svgFile } from "./pictures.js";
 import { token } from "./colors.js";
@@ -41,7 +42,7 @@ export function mount(element, app) {
     const { gains } = state.rulebase;
     note.hidden = Boolean(gains);
     picture.classList.toggle("gone", !gains);
-    certify.disabled = !gains;
+    enable(certify, gains);
     if (!gains) {
       note.textContent =
         "The outputs of this rule base are no gains. Outputs stiffness and damping, stiffness " +
@@ -62,7 +63,8 @@ export function mount(element, app) {
   }
 
   async function prove() {
-    certify.disabled = true;
+    if (!isEnabled(certify)) return;
+    enable(certify, false);
     verdict.textContent = "Certifying…";
     try {
       const { verdict: word, sentence, counter_example: example } = await socket.send("certify");
@@ -72,7 +74,7 @@ export function mount(element, app) {
       verdict.textContent = "";
       say(error.message, "error");
     }
-    certify.disabled = false;
+    enable(certify, true);
   }
 
   function draw() {

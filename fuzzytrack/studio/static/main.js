@@ -4,6 +4,7 @@ import { makeEdits } from "./edits.js";
 import { choice, html } from "./elements.js";
 import { followPoint } from "./explain.js";
 import * as files from "./files.js";
+import { takeBackByEscape } from "./focus.js";
 import { followScenario } from "./scenario.js";
 import { connect } from "./socket.js";
 import { makeStore } from "./store.js";
@@ -64,9 +65,13 @@ const app = {
 };
 Object.assign(app, followPoint(app), { scenario: followScenario(app) });
 
-/** Tabs of the rules: the table, or the text it stands in. */
+/** Tabs of the rules: the table, or the text it stands in. Each pane has them. */
 function tabs() {
-  const element = choice("Rules as", (tab) => store.set({ tab }));
+  const element = choice("Rules as", (tab) => {
+    store.set({ tab });
+    document.querySelector(".pane:not([hidden]) .rules-tabs [aria-pressed=true]").focus();
+  });
+  element.element.classList.add("rules-tabs");
   store.follow(["tab"], ({ tab }) => element.show([["table", "Table"], ["text", "Text"]], tab));
   return element.element;
 }
@@ -162,6 +167,7 @@ dark.addEventListener("change", () => setScheme(app.wantedScheme()));
 
 const bar = files.mount(document.getElementById("bar"), app);
 mountViews(document.getElementById("rail"), document.getElementById("main"), app);
+takeBackByEscape();
 
 document.addEventListener("keydown", (event) => {
   if (document.querySelector("dialog[open]")) return;

@@ -9,10 +9,15 @@ const BORDER = 28;
 const BAR_PIXELS = 120;
 const NEAREST = 1e-3; // meters a pixel
 const FARTHEST = 1e6;
+// Pixels of an arrow key: of the map, and of the cross.
+const PAN = 40;
+const AIM = 5;
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /**
  * Make a map. Layers are {element, draw(place)}; place has x(east), y(north) in pixels and `scale`,
- * meters a pixel. `clicked({x, y})` hears of clicks on the ground in meters, while `drawing()`.
+ * meters a pixel. `clicked({x, y})` hears of clicks on the ground in meters, while `drawing()`. While
+ * it is drawn or measured, the arrow keys move a cross, and the space key is a click there.
  */
 export function makeMap({ name, bounds, clicked = null, drawing = () => false }) {
   const ground = svg("g", { class: "map-grid" });
@@ -27,7 +32,7 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
       type: "button",
       class: "quiet",
       "aria-pressed": "false",
-      title: "Measure: drag between two places; their distance and direction are shown",
+      title: "Measure the distance and direction between two places: drag; or arrows and Space",
       onclick: () => setMeasuring(!measuring),
     },
     "Measure",
@@ -48,7 +53,10 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
   let asked = false;
   let measuring = false;
   let ruler = null;
+  let ruling = false;
   let moved = false;
+  // The cross of the keys, in meters.
+  let aim = null;
 
   const place = {
     x: (east) => picture.clientWidth / 2 + (east - center[0]) / scale,
@@ -65,7 +73,10 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
   function setMeasuring(on) {
     measuring = on;
     ruler = null;
+    ruling = false;
+    aim = null;
     measure.setAttribute("aria-pressed", String(on));
+    if (on) picture.focus();
     redraw();
   }
 
@@ -96,7 +107,8 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
       picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
       ground.replaceChildren(...grid(place, center, width, height));
       for (const layer of layers) layer.draw(place);
-      over.replaceChildren(...scaleBar(scale, width, height), ...rulerOf(place, ruler));
+      if (!isAiming()) aim = null;
+      over.replaceChildren(...scaleBar(scale, width, height), ...rulerOf(place, ruler), ...crossOf(place, aim));
     });
   }
 
@@ -142,6 +154,10 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
   function move(event) {
     if (scale === null) return;
     const under = toWorld(event);
+    if (aim) {
+      aim = null;
+      redraw();
+    }
     tell(under);
     const before = touches.get(event.pointerId);
     if (!before) return;
@@ -166,17 +182,44 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
   function tell({ x, y }) {
     const digits = Math.max(0, Math.ceil(-Math.log10(scale)));
     const words = [x, y].map((v) => v.toFixed(digits).replace("-", "−"));
-    coordinates.value = `x ${words[0]} m   y ${words[1]} m`;
+    const measured = ruling ? `   ${lengthOf(ruler)}` : "";
+    coordinates.value = `x ${words[0]} m   y ${words[1]} m${measured}`;
+  }
+
+  function isAiming() {
+    return measuring || Boolean(clicked && drawing());
+  }
+
+  /** Move the cross, and the map with it at its edges. */
+  function aimBy([right, down], far) {
+    const from = aim ?? { x: center[0], y: center[1] };
+    aim = { x: from.x + right * far * AIM * scale, y: from.y - down * far * AIM * scale };
+    const [left, top] = [place.x(aim.x), place.y(aim.y)];
+    pan(Math.min(0, picture.clientWidth - 20 - left) + Math.max(0, 20 - left),
+      Math.min(0, picture.clientHeight - 20 - top) + Math.max(0, 20 - top));
+    if (ruling) ruler.to = aim;
+    tell(aim);
+  }
+
+  /** The space key: a click at the cross, or an end of the ruler. */
+  function putAtCross() {
+    if (!aim) return aimBy([0, 0], 0);
+    if (!measuring) return clicked(aim);
+    ruling = !ruling;
+    ruler = ruling ? { from: aim, to: aim } : ruler;
+    redraw();
   }
 
   function keys(event) {
     if (event.target !== picture || event.ctrlKey || event.metaKey || event.altKey) return;
-    const step = 40;
+    const [right, down] = ARROWS[event.key] ?? [];
+    const arrow = isAiming()
+      ? () => aimBy([right, down], event.shiftKey ? 10 : 1)
+      : () => pan(-PAN * right, -PAN * down);
     const done = {
-      ArrowLeft: () => pan(step, 0),
-      ArrowRight: () => pan(-step, 0),
-      ArrowUp: () => pan(0, step),
-      ArrowDown: () => pan(0, -step),
+      ...(ARROWS[event.key] ? { [event.key]: arrow } : {}),
+      ...(isAiming() ? { " ": putAtCross } : {}),
+      ...(measuring ? { Escape: () => setMeasuring(false) } : {}),
       "+": () => zoom(1 / ZOOM),
       "=": () => zoom(1 / ZOOM),
       "-": () => zoom(ZOOM),
@@ -281,11 +324,21 @@ function rulerOf(place, ruler) {
   if (!ruler) return [];
   const { from, to } = ruler;
   const [x1, y1, x2, y2] = [place.x(from.x), place.y(from.y), place.x(to.x), place.y(to.y)];
-  const length = Math.hypot(to.x - from.x, to.y - from.y);
-  // Directions as in scenarios: from the x axis toward the y axis.
-  const heading = (Math.atan2(to.y - from.y, to.x - from.x) * 180) / Math.PI;
   return [
     svg("line", { class: "ruler", x1, y1, x2, y2 }),
-    svg("text", { class: "ruler-text", x: x2 + 8, y: y2 - 8 }, `${distance(length)}, ${shown(heading, 3)}°`),
+    svg("text", { class: "ruler-text", x: x2 + 8, y: y2 - 8 }, lengthOf(ruler)),
   ];
+}
+
+/** Distance and direction of a ruler in words; directions are from the x axis toward the y axis. */
+function lengthOf({ from, to }) {
+  const length = Math.hypot(to.x - from.x, to.y - from.y);
+  const heading = (Math.atan2(to.y - from.y, to.x - from.x) * 180) / Math.PI;
+  return `${distance(length)}, ${shown(heading, 3)}°`;
+}
+
+function crossOf(place, aim) {
+  if (!aim) return [];
+  const [x, y] = [place.x(aim.x), place.y(aim.y)];
+  return [svg("path", { class: "aim", d: `M${x - 12} ${y}h24M${x} ${y - 12}v24` })];
 }

@@ -1,6 +1,7 @@
 /* The trackers that are chosen: one a row, with its parameters; added from all that are known. */
 
 import { check, html } from "./elements.js";
+import { keepFocus } from "./focus.js";
 import { icon } from "./icons.js";
 import { menu } from "./menu.js";
 
@@ -162,13 +163,7 @@ export function trackerList({ store }) {
 
   store.follow(["trackers", "hello", "scenario", "opened"], ({ trackers, hello }) => {
     if (!hello) return;
-    const inside = rows.contains(document.activeElement);
-    const place = inside
-      ? [...rows.querySelectorAll("input, button, summary")].indexOf(document.activeElement)
-      : -1;
-    rows.replaceChildren(...trackers.map(rowOf));
-    // The row was drawn anew: the focus goes back to where it was.
-    if (inside) [...rows.querySelectorAll("input, button, summary")].at(place)?.focus();
+    keepFocus(element, () => rows.replaceChildren(...trackers.map(rowOf)));
   });
   return { element };
 }

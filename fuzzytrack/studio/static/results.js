@@ -5,6 +5,7 @@ import { makeChart } from "./chart.js";
 import { errorsOf, finite, first, linesOf, namesOf, trajectoriesOf } from "./curves.js";
 import { figure } from "./figure.js";
 import { keepText } from "./files.js";
+import { keepFocus } from "./focus.js";
 import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import * as pair from "./pair.js";
@@ -138,11 +139,11 @@ function mountAll(element, app) {
 
   function drawTable({ results, hidden, sorting }) {
     if (!results) return;
-    const held = table.contains(document.activeElement) ? focusOf(table) : -1;
     notes.hidden = !results.notes?.length;
     notes.replaceChildren(...(results.notes ?? []).map((text) => html("li", {}, text)));
-    table.replaceChildren(resultTable(results, hidden, app.toggleLine, sorting, sortBy));
-    if (held >= 0) table.querySelectorAll("button")[held]?.focus();
+    keepFocus(table, () =>
+      table.replaceChildren(resultTable(results, hidden, app.toggleLine, sorting, sortBy)),
+    );
   }
 
   function draw(now) {
@@ -200,10 +201,6 @@ function gainsOf({ results, hidden }, gain) {
     y: { label: `gain ${sign}` },
     series,
   };
-}
-
-function focusOf(table) {
-  return [...table.querySelectorAll("button")].indexOf(document.activeElement);
 }
 
 /** What can be kept of the results. */

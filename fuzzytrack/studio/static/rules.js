@@ -4,6 +4,7 @@ import {
   listRows, listSlots, placeKey, spoken, tableFile, tableRows, tableSlots, tint, write,
 } from "./cells.js";
 import { html, select } from "./elements.js";
+import { keepFocus } from "./focus.js";
 import { pictureMenu } from "./pictures.js";
 import { consequents, outputsOf, piecesOf, variable, withWord } from "./rulebase.js";
 import { complaintRows } from "./text.js";
@@ -232,7 +233,9 @@ export function mount(element, app) {
       painted = "";
       build(rulebase);
     }
-    if (JSON.stringify(rulebase.operators) !== operators.dataset.known) showOperators(rulebase);
+    if (JSON.stringify(rulebase.operators) !== operators.dataset.known) {
+      keepFocus(operators, () => showOperators(rulebase));
+    }
     about.textContent = rulebase.description;
     complaints.replaceChildren(...complaintRows(state.complaints, goTo));
     const outputs = outputsOf(rulebase);
@@ -244,14 +247,13 @@ export function mount(element, app) {
   store.follow(["state", "colorBy"], ({ state, colorBy: output }) => {
     const outputs = state?.rulebase ? outputsOf(state.rulebase) : [];
     coloring.hidden = outputs.length < 2;
-    coloring.replaceChildren(
-      select(
-        "Color cells by",
-        outputs.map((name) => [name, `color ${name}`]),
-        output,
-        (name) => store.set({ colorBy: name }),
-      ),
+    const chosen = select(
+      "Color cells by",
+      outputs.map((name) => [name, `color ${name}`]),
+      output,
+      (name) => store.set({ colorBy: name }),
     );
+    keepFocus(coloring, () => coloring.replaceChildren(chosen));
   });
   store.follow(
     ["state", "colorBy", "palette", "explanation", "cell", "scheme", "symmetric"],
@@ -299,13 +301,5 @@ function layoutOf({ rules, inputs }) {
 function sentence(text) {
   const whole = text[0].toUpperCase() + text.slice(1);
   return /[.!?]$/.test(whole) ? whole : `${whole}.`;
-}
-
-/** Redraw a part of the page; the control that had the focus has it again. */
-function keepFocus(part, redraw) {
-  const controls = () => [...part.querySelectorAll("button, input")];
-  const at = controls().indexOf(document.activeElement);
-  redraw();
-  if (at >= 0) controls()[at]?.focus();
 }
 

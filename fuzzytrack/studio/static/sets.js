@@ -3,6 +3,7 @@
 import { lineColor, shareOf, token } from "./colors.js";
 import { check, choice, html, select, svg } from "./elements.js";
 import { ask } from "./dialogs.js";
+import { keepFocus } from "./focus.js";
 import { icon } from "./icons.js";
 import { shown, ticks, tidy, typed } from "./numbers.js";
 import { pictureMenu, svgFile } from "./pictures.js";
@@ -15,6 +16,9 @@ const MARGIN = { left: 30, right: 14, top: 34, bottom: 36 };
 const NEAR = 10;
 // Pixels within which a corner snaps to another.
 const SNAP = 5;
+
+// The handle that moves a set as a whole, as dragging its curve does.
+const WHOLE = { name: "whole set", grade: 0.5 };
 
 export function mount(element, app) {
   const { store, say } = app;
@@ -116,10 +120,10 @@ export function mount(element, app) {
     const wanted = `${current().name} ${one.name} ${one.shape}`;
     if (wanted !== corners) {
       corners = wanted;
-      handles.replaceChildren(...SHAPES[one.shape].corners.map((corner) => handle(one.name, corner)));
+      handles.replaceChildren(...handlesOf(one).map((corner) => handle(one.name, corner)));
     }
-    SHAPES[one.shape].corners.forEach((corner, k) => {
-      const value = corner.place(one.parameters);
+    handlesOf(one).forEach((corner, k) => {
+      const value = placeOf(one, corner);
       const group = handles.children[k];
       group.setAttribute("transform", `translate(${at.x(clamp(value, at))} ${at.y(corner.grade)})`);
       group.classList.toggle("outside", value < at.low || value > at.high);
@@ -143,7 +147,9 @@ export function mount(element, app) {
         onblur: release,
       },
       svg("circle", { class: "reach", r: 13 }),
-      svg("circle", { class: "knob", r: 5.5 }),
+      corner === WHOLE
+        ? svg("rect", { class: "knob", x: -4.5, y: -4.5, width: 9, height: 9 })
+        : svg("circle", { class: "knob", r: 5.5 }),
     );
   }
 
@@ -280,10 +286,10 @@ export function mount(element, app) {
     if (!direction || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     const set = chosenSet();
-    if (!held) grab(set, corner);
-    const now = setsNow().find(({ name }) => name === set);
+    const now = () => setsNow().find(({ name }) => name === set);
+    if (!held) grab(set, corner === WHOLE ? null : corner, placeOf(now(), corner));
     const far = direction * (event.shiftKey ? 10 : 1) * step();
-    move(corner.place(now.parameters) + far, true);
+    move(placeOf(now(), corner) + far, true);
   }
 
   // ------------------------------------------------------------------ the mouse
@@ -324,10 +330,7 @@ export function mount(element, app) {
     store.set({ set: found.set });
     // A first press on a curve chooses it; only the chosen set is dragged as a whole.
     if (found.corner || again) grab(found.set, found.corner, found.value);
-    if (found.corner) {
-      const place = SHAPES[held.before.shape].corners.indexOf(found.corner);
-      handles.children[place]?.focus();
-    }
+    if (held) handles.children[handlesOf(held.before).indexOf(found.corner ?? WHOLE)]?.focus();
   });
   picture.addEventListener("pointermove", (event) => {
     if (held && event.buttons) {
@@ -350,7 +353,7 @@ export function mount(element, app) {
     ]);
     if (table.dataset.structure !== structure) {
       table.dataset.structure = structure;
-      fillTable(sets);
+      keepFocus(table, () => fillTable(sets));
     }
     showHeads(sets);
     sets.forEach((one, k) => {
@@ -508,7 +511,7 @@ export function mount(element, app) {
     const known = JSON.stringify([target.name, others, grid, snap, linked, mirror, shared, possible()]);
     if (options.dataset.known === known) return;
     options.dataset.known = known;
-    options.replaceChildren(
+    const controls = [
       select(
         "Snap",
         [["grid", `snap ${grid}`], ["fine", `snap ${shown((high - low) / 200, 3)}`], ["off", "no snap"]],
@@ -533,7 +536,8 @@ export function mount(element, app) {
             ),
           ]
         : []),
-    );
+    ];
+    keepFocus(options, () => options.replaceChildren(...controls));
   }
 
   store.follow(["state", "variable"], ({ state, variable: name }) => {
@@ -571,6 +575,18 @@ function rounded(parameter) {
 
 function clamp(value, { low, high }) {
   return Math.max(low, Math.min(high, value));
+}
+
+/** What a set is moved by: its corners, and itself as a whole. */
+function handlesOf({ shape }) {
+  const { corners } = SHAPES[shape];
+  return corners.length > 1 ? [...corners, WHOLE] : corners;
+}
+
+function placeOf({ shape, parameters }, corner) {
+  if (corner !== WHOLE) return corner.place(parameters);
+  const [, b, c] = SHAPES[shape].quad(parameters);
+  return (b + c) / 2;
 }
 
 function cornersAt({ shape, parameters }, place) {

@@ -3,6 +3,7 @@
 import { axisOf, drawAxes, drawColorBar } from "./axes.js";
 import { color, css, mix, token } from "./colors.js";
 import { check, choice, html, select } from "./elements.js";
+import { keepFocus } from "./focus.js";
 import { icon } from "./icons.js";
 import { shown, span, ticks } from "./numbers.js";
 import { pictureMenu } from "./pictures.js";
@@ -161,39 +162,37 @@ export function mount(element, app) {
     over.hidden = inputs.length < 3;
     if (over.hidden) return;
     const chosen = axesOf(state.rulebase, axes).map(({ name }) => name);
-    over.replaceChildren(
-      ...chosen.map((name, k) =>
-        select(
-          k ? "Input that runs to the back" : "Input that runs to the right",
-          inputs.map((one) => [one.name, `${k ? "y" : "x"}: ${one.name}`]),
-          name,
-          // The same input twice would be no surface: the two change places.
-          (now) => store.set({ axes: now === chosen[1 - k] ? [...chosen].reverse() : chosen.with(k, now) }),
-        ),
+    const selects = chosen.map((name, k) =>
+      select(
+        k ? "Input that runs to the back" : "Input that runs to the right",
+        inputs.map((one) => [one.name, `${k ? "y" : "x"}: ${one.name}`]),
+        name,
+        // The same input twice would be no surface: the two change places.
+        (now) => store.set({ axes: now === chosen[1 - k] ? [...chosen].reverse() : chosen.with(k, now) }),
       ),
     );
+    keepFocus(over, () => over.replaceChildren(...selects));
   });
   store.follow(["files", "shipped", "against"], ({ files, shipped, against: chosen }) => {
     const names = [...files.filter(({ kind }) => kind === "rules").map(({ name }) => name), ...shipped];
     const options = [["", "no difference"], ["saved", "minus what was saved"]];
-    against.replaceChildren(
-      select(
-        "Difference to another rule base",
-        [...options, ...names.map((name) => [name, `minus ${name}`])],
-        chosen ?? "",
-        (name) => store.set({ against: name || null }),
-      ),
+    const difference = select(
+      "Difference to another rule base",
+      [...options, ...names.map((name) => [name, `minus ${name}`])],
+      chosen ?? "",
+      (name) => store.set({ against: name || null }),
     );
+    keepFocus(against, () => against.replaceChildren(difference));
   });
   store.follow(["visits", "shadeVisits"], ({ visits, shadeVisits }) => {
-    element.querySelector(".visits-check").replaceChildren(
-      ...(visits
-        ? [
-            check("visits", shadeVisits, (on) => store.set({ shadeVisits: on }),
-              "Colors where the last run was; gray where it never came"),
-          ]
-        : []),
-    );
+    const place = element.querySelector(".visits-check");
+    const shade = visits
+      ? [
+          check("visits", shadeVisits, (on) => store.set({ shadeVisits: on }),
+            "Colors where the last run was; gray where it never came"),
+        ]
+      : [];
+    keepFocus(place, () => place.replaceChildren(...shade));
   });
   store.follow(["values", "valuesError"], ({ values, valuesError }) => {
     const empty = values?.heights.some(Number.isNaN);

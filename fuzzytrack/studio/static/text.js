@@ -73,7 +73,10 @@ export function mount(element, app) {
   area.addEventListener("scroll", scroll);
   area.addEventListener("keydown", (event) => {
     // Tab leaves the field, as everywhere on the page; Esc is a way back to the table.
-    if (event.key === "Escape") app.show({ tab: "table" });
+    if (event.key === "Escape") {
+      app.show({ tab: "table" });
+      document.querySelector('#pane-rules td[tabindex="0"]')?.focus();
+    }
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
       // The undo of the page, which knows of the table and the sets too, not that of the field.
       event.preventDefault();

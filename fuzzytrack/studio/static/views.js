@@ -4,6 +4,7 @@ import * as contour from "./contour.js";
 import * as data from "./data.js";
 import { html } from "./elements.js";
 import * as explain from "./explain.js";
+import { goByArrows } from "./focus.js";
 import * as gainplane from "./gainplane.js";
 import { icon } from "./icons.js";
 import * as results from "./results.js";
@@ -55,8 +56,10 @@ export function mountViews(rail, main, app) {
     return html("button", { type: "button", "data-view": id, onclick: open }, icon(picture), html("span", {}, title));
   });
   rail.append(...buttons);
+  goByArrows(rail);
 
   store.follow(["view", "tab"], ({ view, tab }) => {
+    const isAnother = main.dataset.view !== undefined && main.dataset.view !== view;
     main.dataset.view = view;
     for (const [name, pane] of panes) {
       const behind = name === (tab === "text" ? "rules" : "text");
@@ -66,5 +69,8 @@ export function mountViews(rail, main, app) {
       if (button.dataset.view === view) button.setAttribute("aria-current", "page");
       else button.removeAttribute("aria-current");
     }
+    // What had the focus is not shown any more.
+    const focused = document.activeElement;
+    if (isAnother && (focused === document.body || focused.closest(".pane[hidden]"))) main.focus();
   });
 }

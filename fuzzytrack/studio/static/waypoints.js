@@ -1,6 +1,7 @@
 /* Way-points: handles on the map that are dragged or moved by keys, and a list of typed numbers. */
 
 import { html, svg } from "./elements.js";
+import { enable, isEnabled, keepFocus } from "./focus.js";
 import { icon } from "./icons.js";
 import { distance } from "./map.js";
 import { shown, tidy, typed } from "./numbers.js";
@@ -108,11 +109,14 @@ export function waypointLayer({ map, read, write, draft = () => {}, named = (k) 
   }
 
   async function finish(all, focus) {
+    const hold = () => requestAnimationFrame(() => handles.children[Math.min(focus, all.length - 1)]?.focus());
     dragged = all;
+    map.redraw();
+    hold();
     await write(all);
     dragged = null;
     map.redraw();
-    requestAnimationFrame(() => handles.children[Math.min(focus, all.length - 1)]?.focus());
+    hold();
   }
 
   function keys(event) {
@@ -172,7 +176,7 @@ export function waypointList(write) {
 
   function show(points) {
     now = points;
-    fit(rows, points.length, rowOf);
+    keepFocus(rows, () => fit(rows, points.length, rowOf));
     points.forEach((point, k) => {
       const row = rows.children[k];
       row.firstChild.textContent = String(k + 1);
@@ -186,7 +190,7 @@ export function waypointList(write) {
       const [insert, remove] = row.children[4].children;
       insert.setAttribute("aria-label", `Insert a way-point after ${k + 1}`);
       remove.setAttribute("aria-label", `Delete way-point ${k + 1}`);
-      remove.disabled = points.length <= 2;
+      enable(remove, points.length > 2);
     });
   }
 
@@ -218,7 +222,7 @@ export function waypointList(write) {
       );
       write(points);
     };
-    const remove = () => write(now.filter((_, k) => k !== index()));
+    const remove = ({ currentTarget }) => isEnabled(currentTarget) && write(now.filter((_, k) => k !== index()));
     row.append(
       html("td", { class: "number" }),
       html(

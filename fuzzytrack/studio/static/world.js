@@ -127,7 +127,7 @@ export function mount(element, app) {
     drafted = [];
     showDrawing();
     map.picture.focus();
-    say("Click the way-points on the map, at least two. Enter or Esc ends.");
+    say("Click the way-points on the map, or put them with arrows and Space; at least two. Enter or Esc ends.");
   }
 
   function finish() {
@@ -141,7 +141,7 @@ export function mount(element, app) {
     const on = drafted !== null;
     draw.setAttribute("aria-pressed", String(on));
     draw.textContent = on ? "Done" : "Draw way-points";
-    draw.title = on ? "End the path (Enter)" : "Draw a new path: click its way-points on the map";
+    draw.title = on ? "End the path (Enter)" : "Draw a new path: click its way-points on the map, or put them with arrows and Space";
     map.element.classList.toggle("drawing", on);
     target.show();
     if (store.now.scenario) showAxes();
