@@ -5,16 +5,18 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable
+from copy import copy
 from functools import wraps
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.judging import GateWidth
+from fuzzytrack.recordings.scan_plots import OF_TRACKS
 
-__all__ = ["gate_width", "number_or", "plot_reading", "reads_plots"]
+__all__ = ["gate_width", "number_or", "plot_reading", "reads_plots", "reads_scans"]
 
 _Text = str | None
 
@@ -181,8 +183,33 @@ def plot_reading(
 
 def reads_plots(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of `plot_reading`, in place of its argument ``reading``."""
+    return _with_options(command, dict(inspect.signature(plot_reading, eval_str=True).parameters))
+
+
+def reads_scans(command: Callable[..., None]) -> Callable[..., None]:
+    """As `reads_plots`, for plots without identities: options about tracks are not in the help."""
+    found = dict(inspect.signature(plot_reading, eval_str=True).parameters)
+    for name in ("id", *OF_TRACKS):
+        # Still known: an identity is not used, and a rule about one track is refused by its name.
+        found[name] = _changed(found[name], hidden=True)
+    help = "Standard deviation of the plots, m; or its columns. [default: the configuration's]"
+    found["sigma"] = _changed(found["sigma"], metavar="S|S,S|COL|COL,COL", help=help)
+    return _with_options(command, found)
+
+
+def _changed(parameter: inspect.Parameter, **attributes: Any) -> inspect.Parameter:
+    """An option with other attributes."""
+    kind, option = get_args(parameter.annotation)
+    option = copy(option)
+    for name, value in attributes.items():
+        setattr(option, name, value)
+    return parameter.replace(annotation=Annotated[kind, option])
+
+
+def _with_options(
+    command: Callable[..., None], added: dict[str, inspect.Parameter]
+) -> Callable[..., None]:
     own = inspect.signature(command, eval_str=True).parameters
-    added = inspect.signature(plot_reading, eval_str=True).parameters
 
     @wraps(command)
     def with_options(**given: Any) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -15,7 +15,7 @@ from fuzzytrack.cli.noise_words import noise_json, noise_sentence
 from fuzzytrack.cli.output import print_json, print_table, progress, say, say_notes
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
-from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.cli.plot_options import number_or, reads_scans
 from fuzzytrack.io.byte_stream import STANDARD_INPUT
 from fuzzytrack.io.files import PathLike, check_output
 from fuzzytrack.io.reading import Reading
@@ -26,9 +26,9 @@ from fuzzytrack.recordings.scanning import (
     ScannedRecording,
     scanner_with,
 )
-
-if TYPE_CHECKING:
-    from fuzzytrack.scoring.positions import Positions
+from fuzzytrack.scoring.clock_lag import Lag, by_clock_of, lag_of
+from fuzzytrack.scoring.metrics import Settings
+from fuzzytrack.scoring.positions import Positions
 
 __all__ = ["scan"]
 
@@ -45,7 +45,7 @@ _HEADS = {
 }
 
 
-@reads_plots
+@reads_scans
 def scan(
     files: Annotated[
         list[str],
@@ -186,10 +186,18 @@ def scan(
         str | None,
         typer.Option(
             metavar="FILE",
-            help="Table of true positions, by the clock of the plots, for --plot and --animate.",
+            help="Table of true positions, for --plot and --animate.",
             rich_help_panel=_TRACKS,
         ),
     ] = None,
+    lag: Annotated[
+        str,
+        typer.Option(
+            metavar="S|GROUP=S,…|auto|none",
+            help="How late the clock of the plots is against --truth, s; auto fits it.",
+            rich_help_panel=_TRACKS,
+        ),
+    ] = "none",
     follow: Annotated[
         bool,
         typer.Option(
@@ -244,10 +252,13 @@ def scan(
         raise ValueError("--json: -o - writes the tracks to standard output; name a file")
     if output_columns is not None and output is None:
         raise ValueError("--output-columns: are those of -o; give it")
-    pictures = _Pictures(plot, animate, show, truth)
+    late = options.lags(lag)
+    pictures = _Pictures(plot, animate, show, truth, late)
     for option, given in (("--show", show), ("--truth", truth)):
         if given is not None and not pictures.any:
             raise ValueError(f"{option}: is for --plot and --animate; give one of them")
+    if late is not None and truth is None:
+        raise ValueError("--lag: is that of the plots behind --truth; give it")
     if show is not None and group is None:
         raise ValueError("--show: is one of the groups of --group; give it")
     job = ScanJob.of(
@@ -277,12 +288,13 @@ def _names(text: str | None, option: str) -> tuple[str, ...] | None:
 
 @dataclass(frozen=True)
 class _Pictures:
-    """Files of pictures that are asked for; the group that they show, and the file of the truth."""
+    """Files of pictures that are asked for; the group and the truth that they show."""
 
     plot: str | None
     animate: str | None
     show: str | None
     truth: str | None
+    lag: Lag
 
     @property
     def any(self) -> bool:
@@ -317,10 +329,20 @@ class _Pictures:
             raise ValueError(f"--show: no group {self.show!r}; expected one of {there}")
         return self.show
 
+    def by_clock(
+        self, found: ScannedRecording, group: str, truth: Positions | None
+    ) -> Positions | None:
+        """True positions of the group that is shown, by the clock of its plots."""
+        if truth is None:
+            return None
+        truth = truth if truth.group is None else truth.of_group(group)
+        tracks = Positions.of(found.results[group], "tracks")
+        truth, fitted = by_clock_of(tracks, truth, lag_of(self.lag, group), Settings().cutoff)
+        found.job.plots.findings.note([fitted] if fitted else [])
+        return truth
+
     def write(self, found: ScannedRecording, group: str, truth: Positions | None) -> None:
         """Write them."""
-        if truth is not None and truth.group is not None:
-            truth = truth.of_group(group)
         if self.plot is not None:
             save_picture(self.plot, lambda: found.plot(group, truth=truth), found.job.inputs)
         if self.animate is not None:
@@ -350,6 +372,7 @@ def _run(
         with progress("tracking") as watch:
             found = job.whole(tentative=tentative, progress=watch)
         group = pictures.group(found)
+        truth = pictures.by_clock(found, group, truth)
         if place is not None:
             found.write(place, quote_formulas=quote_formulas)
         pictures.write(found, group, truth)

@@ -9,7 +9,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.output import print_json, print_table, progress, say
-from fuzzytrack.cli.plot_options import number_or, reads_plots
+from fuzzytrack.cli.plot_options import number_or, reads_scans
 from fuzzytrack.io.files import check_output
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.plurals import counted
@@ -23,7 +23,7 @@ __all__ = ["tune"]
 _SCANS = "Scans"
 
 
-@reads_plots
+@reads_scans
 def tune(
     config: Annotated[
         str,

@@ -33,7 +33,10 @@ from fuzzytrack.reprs import summary
 from fuzzytrack.scan.scan import UNKNOWN_PLACE, Scan
 from fuzzytrack.tasks import Progress
 
-__all__ = ["ScanPlots", "scans_of"]
+__all__ = ["OF_TRACKS", "ScanPlots", "scans_of"]
+
+#: Rules about single tracks, which plots without identities do not have.
+OF_TRACKS = ("duplicates", "stale", "least_step", "max_gap", "max_coast")
 
 # Names of columns that say which scan a plot belongs to.
 _SCANS = ("scan", "scan_number", "scan_no", "scan_id", "sweep", "sweep_number", "frame")
@@ -43,8 +46,6 @@ _FIRST = 5_000
 _LEAST_PERIOD, _MOST_PERIOD = 0.001, 86_400
 # Sectors of a turn: the tracks in one need the plots of its neighbors on both sides.
 _LEAST_SECTORS, _MOST_SECTORS = 4, 1024
-# Rules about single tracks, which plots without identities do not have.
-_OF_TRACKS = ("duplicates", "stale", "least_step", "max_gap", "max_coast")
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ class ScanPlots:
         plots : path, data frame, mapping or tuple
             As for `fuzzytrack.track`.
         reading : Reading, optional
-            How it is read. Identities are not used.
+            How it is read, without the options `OF_TRACKS`. Identities are not used.
         scan : str, optional
             Column in which plots of one scan have the same word or number.
         period : float, optional
@@ -368,9 +369,11 @@ def _checked(
     if period is not None and scan is not None:
         raise ValueError("scan and period: both say what a scan is; give one of them")
     usual = Cleaning()
-    for name in _OF_TRACKS:
+    for name in OF_TRACKS:
         if getattr(reading.cleaning, name) != getattr(usual, name):
-            raise ValueError(f"{name}: is about plots of one track; plots of a scan have none yet")
+            raise ValueError(
+                f"{name}: is about plots of one track; plots of a scan have none yet; leave it out"
+            )
     if reading.description.sigma == "auto":
         raise ValueError(
             "sigma: cannot be estimated from plots without identities; give numbers or columns, or "

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,10 @@ from fuzzytrack.scoring.instants import Timing
 from fuzzytrack.scoring.interpolation import at_instants, usual_interval
 from fuzzytrack.scoring.positions import Positions
 
-__all__ = ["TrackLag", "fitted_lag"]
+__all__ = ["Lag", "TrackLag", "by_clock_of", "fitted_lag", "lag_of"]
+
+#: A lag of the clock of tracks (s), or that of each group, or whether it is fitted.
+Lag = float | Mapping[str, float] | Literal["auto"] | None
 
 # Largest lag that is looked for, in usual times between rows of a track, and as a share of the
 # time of the truth.
@@ -118,6 +122,61 @@ def fitted_lag(tracks: Positions, truth: Positions, cutoff: float, timing: Timin
 
     lag = _refined(size, float(lags[best - 1]), float(lags[best + 1]), interval)
     return min((TrackLag(each, size(each), before) for each in (lag, float(lags[best]))), key=_size)
+
+
+def lag_of(lag: Lag, group: str) -> float | Literal["auto"] | None:
+    """Lag of one group.
+
+    Parameters
+    ----------
+    lag : float, mapping from groups to float, "auto" or None
+        As for `fuzzytrack.score`.
+    group : str
+        Name of the group; empty if there are none.
+
+    Raises
+    ------
+    ValueError
+        If it is no finite number, or none is given for this group.
+    """
+    if isinstance(lag, Mapping):
+        if not group:
+            raise ValueError("lag: is given by group, but there are no groups; expected one number")
+        if group not in lag:
+            raise ValueError(f"lag: has no group {group!r}; expected a lag of every group")
+        lag = lag[group]
+    if lag is None or lag == "auto":
+        return lag
+    if isinstance(lag, str | bool) or not math.isfinite(lag):
+        raise ValueError(f"lag: must be a finite number of seconds, 'auto' or None, got {lag!r}")
+    return float(lag)
+
+
+def by_clock_of(
+    tracks: Positions, truth: Positions, lag: float | Literal["auto"] | None, cutoff: float
+) -> tuple[Positions, str]:
+    """The truth by the clock of the tracks.
+
+    Parameters
+    ----------
+    tracks, truth : Positions
+        Of one recording.
+    lag : float, "auto" or None
+        Time by which the clock of the tracks is late (s); "auto" fits it.
+    cutoff : float
+        As for `fitted_lag` (m).
+
+    Returns
+    -------
+    truth : Positions
+    said : str
+        What was fitted, in words; empty if nothing was.
+    """
+    said = ""
+    if lag == "auto":
+        found = fitted_lag(tracks, truth, cutoff, Timing())
+        lag, said = found.lag, found.sentence
+    return (replace(truth, time=truth.time + lag) if lag else truth), said
 
 
 def _size(found: TrackLag) -> float:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.plurals import counted
-from fuzzytrack.scoring.clock_lag import TrackLag, fitted_lag
+from fuzzytrack.scoring.clock_lag import Lag, TrackLag, fitted_lag, lag_of
 from fuzzytrack.scoring.close_pairs import ClosePairs
 from fuzzytrack.scoring.instants import Timing, added_at_ends, make_scene
 from fuzzytrack.scoring.metrics import Settings, evaluate, of_kind
@@ -24,8 +24,6 @@ from fuzzytrack.scoring.scores import GroupScores, Scores
 
 __all__ = ["Lag", "Lists", "score", "score_positions"]
 
-#: A lag of the clock of tracks (s), or that of each group, or whether it is fitted.
-Lag = float | Mapping[str, float] | Literal["auto"] | None
 #: Which objects the truth lists.
 Lists = Literal["all", "moving"]
 
@@ -175,17 +173,8 @@ def score_positions(
 
 def _lag_of(lag: Lag, group: object) -> float:
     """Lag of a group (s); 0 where it is fitted, or there is none."""
-    if isinstance(lag, Mapping):
-        if group is None:
-            raise ValueError("lag: is given by group, but there are no groups; expected one number")
-        if str(group) not in lag:
-            raise ValueError(f"lag: has no group {str(group)!r}; expected a lag of every group")
-        lag = lag[str(group)]
-    if lag is None or lag == "auto":
-        return 0.0
-    if isinstance(lag, str | bool) or not math.isfinite(lag):
-        raise ValueError(f"lag: must be a finite number of seconds, 'auto' or None, got {lag!r}")
-    return float(lag)
+    found = lag_of(lag, "" if group is None else str(group))
+    return 0.0 if found is None or found == "auto" else found
 
 
 def _times_of(scans: ArrayLike | Mapping[Any, ArrayLike] | None, group: object) -> Array | None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from collections.abc import Sequence
+from typing import Any
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.scan_plots import ScanPlots
 from fuzzytrack.scan.scan import Scan
+from fuzzytrack.scoring.clock_lag import Lag, lag_of
 from fuzzytrack.scoring.position_files import TableOptions, read_truth
 from fuzzytrack.simulation.scene.files import as_scene, names_scene, shipped_scenes
 from fuzzytrack.simulation.scene.scene import Scene
@@ -63,7 +64,7 @@ def recorded_scans(
     truth: str | os.PathLike[str],
     reading: Reading | None = None,
     *,
-    lag: float | Mapping[str, float] | Literal["auto"] | None = None,
+    lag: Lag = None,
     moving_above: float | None = None,
     group: str | None = None,
     **division: Any,
@@ -112,24 +113,11 @@ def recorded_scans(
                 name,
                 mine,
                 (true.time, true.id, true.position),
-                lag=_lag_of(lag, word),
+                lag=lag_of(lag, word),
                 moving_above=moving_above,
             )
         )
     return tuple(found)
-
-
-def _lag_of(
-    lag: float | Mapping[str, float] | Literal["auto"] | None, group: str
-) -> float | Literal["auto"] | None:
-    """Lag of a group."""
-    if not isinstance(lag, Mapping):
-        return lag
-    if not group:
-        raise ValueError("lag: is given by group, but there are no groups; expected one number")
-    if group not in lag:
-        raise ValueError(f"lag: has no group {group!r}; expected a lag of every group")
-    return lag[group]
 
 
 def scan_sources(

@@ -172,6 +172,16 @@ def test_errors_are_one_line(fails, csv, text, options, said):
     assert said.lstrip("-") in fails("scan", csv(text), *options).replace("`", "").lstrip("-")
 
 
+@pytest.mark.parametrize("command", [("scan",), ("scanner", "tune")])
+def test_the_help_lists_no_options_about_single_tracks(run, command):
+    text = run(*command, "--help").stdout
+    listed = {word.strip(",") for word in text.split() if word.startswith("--")}
+    assert {"--sigma", "--valid", "--polar"} <= listed
+    assert not {"--id", "--stale", "--duplicates", "--least-step", "--max-gap"} & listed
+    assert "COL,COL|auto" not in text
+    assert "--max-coast" in run("track", "--help").stdout
+
+
 def test_rows_without_a_position_are_told(run, csv):
     rows = [f"{k},{k},{'' if k == 2 else 5},5" for k in range(5)]
     result = run("scan", csv("\n".join(["scan,t,x,y", *rows]) + "\n"))

@@ -52,6 +52,36 @@ def test_of_several_groups_the_first_is_on_the_page(run, boats, tmp_path):
     assert len(np.frombuffer(base64.b64decode(data_of(page)["times"]), "<f8")) == 10
 
 
+@pytest.mark.parametrize(("lag", "late"), [("2", 2.0), ("auto", 2.5), ("none", 0.0)])
+def test_the_truth_is_drawn_by_the_clock_of_the_plots(run, boats, csv, tmp_path, lag, late):
+    page = tmp_path / "p.html"
+    lines = ["t,target,north_m,east_m"]
+    for k in range(-10, 26):
+        # Sampled at other times than the scans, by a clock that is 2.5 s slow.
+        t = 2.0 * k
+        lines += [f"{t - 2.5},1,{3 * t},50", f"{t - 2.5},2,-80,{4 * t}"]
+    words = ("scan", boats, "--axes", "north_m,east_m", "--animate", page, "--lag", lag)
+    result = run(*words, "--truth", csv("\n".join(lines) + "\n", "truth.csv"))
+    assert result.exit_code == 0, result.stderr
+    assert (" s behind the truth (fitted" in result.stderr) == (lag == "auto")
+    time = np.frombuffer(base64.b64decode(data_of(page)["truth"]["time"]), "<f8")
+    np.testing.assert_allclose(np.unique(time), 2.0 * np.arange(-10, 26) - 2.5 + late, atol=0.05)
+
+
+def test_a_lag_that_cannot_be_used_is_refused(run, boats, csv, tmp_path):
+    truth = csv("run,t,target,north_m,east_m\na,0,1,0,50\na,9,1,27,50\n", "truth.csv")
+    words, out = ("scan", boats, "--axes", "north_m,east_m", "--lag"), tmp_path / "t.csv"
+    told = "error: --lag: is that of the plots behind --truth; give it\n"
+    assert run(*words, "2", "--plot", tmp_path / "p.png").stderr == told
+    shown = ("--truth", truth, "--plot", tmp_path / "p.png", "-o", out)
+    assert "--lag: expected seconds, GROUP=SECONDS" in run(*words, "late", *shown).stderr
+    none = run(*words, "a=2", *shown)
+    assert (none.exit_code, out.exists()) == (2, False)
+    assert "--lag: is given by group, but there are no groups" in none.stderr
+    other = run(*words, "b=2", *shown, "--group", "run")
+    assert "--lag: has no group 'a'" in other.stderr
+
+
 def test_another_group_with_the_truth(run, boats, csv, tmp_path):
     page, picture = tmp_path / "p.html", tmp_path / "p.png"
     truth = csv(
