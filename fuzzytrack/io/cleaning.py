@@ -94,6 +94,8 @@ class Cleaner:
         The rules.
     period : float, optional
         Period of the clock (s), where the form of the times tells it; see `Clock.period`.
+    turn : float, optional
+        Full circle of positions that are bare angles.
     column : str
         Name of the column of time, for messages.
     show : callable, optional
@@ -109,6 +111,7 @@ class Cleaner:
         cleaning: Cleaning,
         period: float | None = None,
         *,
+        turn: float | None = None,
         column: str = "",
         show: Callable[[float], str] | None = None,
     ) -> None:
@@ -116,7 +119,7 @@ class Cleaner:
         self._column, self._show = column, show or "{:.15g}".format
         self._equal = None
         if cleaning.duplicates != "error":
-            self._equal = EqualTimes(cleaning.duplicates)
+            self._equal = EqualTimes(cleaning.duplicates, turn)
         self._rules = _rules(cleaning)
         known = period if cleaning.wrap == "auto" else cleaning.wrap
         self._clock = np.array([float(known or 0), math.nan])

@@ -39,8 +39,8 @@ class Cleaning:
         Rows without a plot that are later than this after the last plot (s) are dropped.
     wrap : float, "auto" or None
         Period after which the clock starts again (s). "auto" recognizes midnight, the end of the
-        week, and counters of 32 bits in milliseconds or microseconds; with None a time that falls
-        is an error.
+        week, and counters of 32 bits in milliseconds or microseconds, but not the hour: recordings
+        of an hour each, one after the other, look alike. With None a time that falls is an error.
     fill_limit : float
         Greater magnitudes than this stand for no position, as 9.97e36 does, and are missed plots.
 

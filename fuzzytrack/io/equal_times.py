@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.io.angles import unwrapped
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.table import Words
 
@@ -32,6 +33,8 @@ class EqualTimes:
         Which plot stands for all; rows without a plot do not count beside one with a plot. The mean
         is one for each axis, of positions and of standard deviations: plots at one time often have
         one error.
+    turn : float, optional
+        Full circle of positions that are bare angles, whose mean is taken the shorter way.
 
     Attributes
     ----------
@@ -39,8 +42,8 @@ class EqualTimes:
         Rows so far that were exact copies, and others that have become part of another one.
     """
 
-    def __init__(self, merging: Merging) -> None:
-        self.merging = merging
+    def __init__(self, merging: Merging, turn: float | None = None) -> None:
+        self.merging, self.turn = merging, turn
         self.copies = self.merged = 0
         self._held: Piece | None = None
 
@@ -82,7 +85,10 @@ class EqualTimes:
         if self.merging == "mean":
             sigma = piece.sigma
             plots = piece.plots.copy()
-            plots[chosen] = _means(plots[order], group)
+            measured = plots[order]
+            if self.turn is not None:
+                measured = unwrapped(measured[:, 0], group, self.turn)[:, np.newaxis]
+            plots[chosen] = _means(measured, group)
             if sigma is not None:
                 sigma = sigma.copy()
                 sigma[chosen] = _means(sigma[order], group)

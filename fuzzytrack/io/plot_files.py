@@ -173,7 +173,7 @@ class PlotFiles:
         decoder = self.decoder
         rules = replace(self.reading.cleaning, wrap=decoder.description.wrap)
         clock, column = decoder.clock, self.columns.time
-        return Cleaner(rules, clock.period, column=column, show=clock.as_cell)
+        return Cleaner(rules, clock.period, turn=decoder.period, column=column, show=clock.as_cell)
 
     def cleaned(self, pieces: Iterable[Piece], findings: Findings) -> Iterator[Piece]:
         """Take the faults out of the pieces of a run, and count them at the end.

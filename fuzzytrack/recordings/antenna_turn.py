@@ -29,9 +29,11 @@ _ROWS, FEWEST = (2_000, 400, 100), 12
 _AGREE = 0.9
 # Another rate whose directions spread less than so many times as much is as likely.
 _RIVAL = 3.0
-# Periods that are tried together, so that memory stays small; and the most products of rows and
-# periods: a recording with so few plots in a turn that there are more is tried by fewer rows.
-_BLOCK, _MOST_PRODUCTS = 256, 40_000_000
+# The most products of rows and periods: a recording with so few plots in a turn that there are more
+# is tried by fewer rows.
+_MOST_PRODUCTS = 40_000_000
+# Over a longer time without a plot (s) turns cannot be counted on.
+_GAP = 5 * LONGEST
 
 
 @dataclass(frozen=True)
@@ -106,12 +108,20 @@ def turn_of_antenna(rows: ScanRows, period: float | None = None) -> AntennaTurn 
     """
     bearing = bearings_of(rows)
     good = np.flatnonzero(~np.isnan(bearing))
+    good = good[_longest_stretch(rows.time[good])]
     time, bearing = rows.time[good], bearing[good]
     for few in dict.fromkeys(min(count, len(good)) for count in _ROWS):
         found = _turn_of(time[:few], bearing[:few], period) if few >= FEWEST else None
         if found is not None:
             return found
     return None
+
+
+def _longest_stretch(time: Array) -> slice:
+    """The most times (s) that follow each other without a gap."""
+    ends = np.flatnonzero(np.append(np.diff(time) > _GAP, True)) + 1
+    longest = int(np.argmax(np.diff(ends, prepend=0)))
+    return slice(int(ends[longest - 1]) if longest else 0, int(ends[longest]))
 
 
 def bearings_of(rows: ScanRows) -> Array:
@@ -134,13 +144,9 @@ def _turn_of(time: Array, bearing: Array, period: float | None) -> AntennaTurn |
     if (highest - least) / step * 2 * len(since) > _MOST_PRODUCTS:
         return None
     rates = np.arange(least, highest, step)
+    sides = (_on_grid(first, step, len(rates), since, bearing) for first in (-rates[-1], least))
+    lengths = np.concatenate(list(sides))
     rates = np.append(-rates[::-1], rates)
-    lengths = np.concatenate(
-        [
-            _agreement(rates[first : first + _BLOCK], since, bearing)
-            for first in range(0, len(rates), _BLOCK)
-        ]
-    )
     turning = np.abs(rates) >= lowest
     if not turning.any() or lengths[turning].max() < _AGREE / 2:
         return None
@@ -157,6 +163,16 @@ def _turn_of(time: Array, bearing: Array, period: float | None) -> AntennaTurn |
     mean = np.mean(np.exp(1j * (bearing - 2 * math.pi * rate * since)))
     start = float(time[0]) - float(np.angle(mean)) / (2 * math.pi * rate)
     return AntennaTurn(1 / abs(rate), rate > 0, start, agreement)
+
+
+def _on_grid(first: float, step: float, count: int, since: Array, bearing: Array) -> Array:
+    """`_agreement` for rates at equal steps from the first one on."""
+    # A rate is a coarse one plus a fine one, so the sums over rows are a product of two matrices.
+    fine = math.isqrt(count) + 1
+    coarse = first + step * fine * np.arange(-(-count // fine))
+    turned = np.exp(1j * (bearing - 2 * math.pi * coarse[:, None] * since))
+    further = np.exp(-2j * math.pi * step * since[:, None] * np.arange(fine))
+    return np.asarray(np.abs(turned @ further).ravel()[:count] / len(since))
 
 
 def _agreement(rates: Array, since: Array, bearing: Array) -> Array:

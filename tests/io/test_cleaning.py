@@ -15,6 +15,7 @@ from fuzzytrack.io import cleaning
 from fuzzytrack.io.cleaning import Cleaner
 from fuzzytrack.io.cleaning_rules import Cleaning, CleaningCounts
 from fuzzytrack.io.piece import Piece
+from fuzzytrack.io.recording import read_tracks
 from fuzzytrack.io.table import Words
 from fuzzytrack.simulation.sampling import PATTERNS
 
@@ -166,6 +167,19 @@ def test_plots_of_equal_times_become_one(duplicates, kept, values):
     assert plots(out) == values
     assert counts == CleaningCounts(copies=1, merged=4)
     assert counts.sentences()[1] == "4 rows merged with others of equal time"
+
+
+@pytest.mark.parametrize(("unit", "turn"), [("deg", 360.0), ("rad", 2 * math.pi)])
+def test_the_mean_of_bare_angles_is_taken_the_shorter_way(unit, turn, tmp_path):
+    share = np.array([359, 1, 350, 20, 10, 90]) / 360 * turn
+    rows = zip([0, 0, 1, 1, 1, 2], share.tolist(), strict=True)
+    (tmp_path / "a.csv").write_text(
+        f"t,bearing_{unit}\n" + "".join(f"{time},{angle!r}\n" for time, angle in rows)
+    )
+    read = read_tracks(tmp_path / "a.csv", angle=f"bearing_{unit}", duplicates="mean")
+    found = np.exp(2j * math.pi * read.tracks[0].plots[:, 0] / turn)
+    expected = np.exp(2j * math.pi * np.array([0, 20 / 3, 90]) / 360)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 def test_the_mean_is_one_of_each_axis_and_of_sigma():

@@ -245,6 +245,15 @@ def test_a_turning_antenna_is_recognized_by_bearings(period, clockwise):
         assert len(set(seen.tolist())) == len(seen)
 
 
+def test_a_turning_antenna_is_recognized_by_the_longest_time_without_a_long_gap():
+    columns, _, _ = turning(2.437)
+    # Five times some plots, and 70 hours without any between them.
+    columns["t"] += np.searchsorted([30, 60, 90, 400], np.arange(len(columns["t"]))) * 252_000.0
+    made = ScanPlots.of(columns)
+    assert made.cut.rule == "period"
+    assert made.cut.period == pytest.approx(2.437, rel=1e-3)
+
+
 def test_equal_times_are_recognized():
     rng = np.random.default_rng(3)
     times = np.cumsum(rng.uniform(1.6, 1.76, 30))
