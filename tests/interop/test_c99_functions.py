@@ -4,6 +4,7 @@ import math
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
 
@@ -478,10 +479,27 @@ def test_names_and_types_are_checked():
 
 def test_no_compiler_is_said_in_one_line(monkeypatch):
     monkeypatch.setenv("PATH", "")
+    monkeypatch.delenv("CC", raising=False)
     with pytest.raises(CompilerError, match=r"^no C compiler .*install gcc or clang$"):
         find_compiler()
     with pytest.raises(CompilerError, match="'tcc'"):
         find_compiler("tcc")
+
+
+def test_the_compiler_is_that_of_the_variable_cc(monkeypatch, tmp_path):
+    own = tmp_path / "my-cc"
+    own.write_text('#!/bin/sh\necho "error: called with $1" >&2\nexit 1\n')
+    own.chmod(0o755)
+    monkeypatch.setenv("CC", f"{own} --first")
+    with pytest.raises(CompilerError, match=r"^my-cc: error: called with --first$"):
+        built("")
+    assert find_compiler("cc") == [shutil.which("cc")]
+    monkeypatch.setenv("CC", "no-such-cc -m32")
+    with pytest.raises(CompilerError, match=r"^CC: no C compiler 'no-such-cc -m32' is installed"):
+        built("")
+    monkeypatch.setenv("CC", "gcc '-m32")
+    with pytest.raises(CompilerError, match=r"^C compiler .*: No closing quotation$"):
+        built("")
 
 
 def test_an_error_of_the_compiler_is_one_line():

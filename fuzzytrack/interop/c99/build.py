@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -21,19 +22,33 @@ class CompilerError(RuntimeError):
     """There is no C compiler, or it did not compile."""
 
 
-def find_compiler(compiler: str | None = None) -> str:
-    """Path of a C compiler: the one that is named, or ``cc``, ``gcc`` or ``clang``.
+def find_compiler(compiler: str | None = None) -> list[str]:
+    """Command of a C compiler: its path, and the options that are given with it.
+
+    Parameters
+    ----------
+    compiler : str, optional
+        As a shell reads it, such as ``gcc`` or ``ccache gcc -m32``. Unless given, that in the
+        environment variable ``CC``, as for make; without it ``cc``, ``gcc`` or ``clang``, the
+        first that is installed.
 
     Raises
     ------
     CompilerError
-        If there is none.
+        If it is not installed, or there is none.
     """
-    for name in _COMPILERS if compiler is None else (compiler,):
-        found = shutil.which(name)
+    given = compiler or os.environ.get("CC", "").strip()
+    try:
+        commands = [shlex.split(command) for command in ([given] if given else _COMPILERS)]
+    except ValueError as error:
+        raise CompilerError(f"C compiler {given!r}: {error}") from None
+    for program, *options in commands:
+        found = shutil.which(program)
         if found is not None:
-            return found
-    wanted = " or ".join(_COMPILERS) if compiler is None else repr(compiler)
+            return [found, *options]
+    if given and not compiler:
+        raise CompilerError(f"CC: no C compiler {given!r} is installed; unset CC, or install it")
+    wanted = repr(given) if given else " or ".join(_COMPILERS)
     raise CompilerError(f"no C compiler {wanted} is installed; install gcc or clang")
 
 
@@ -62,7 +77,7 @@ def built(
     with tempfile.TemporaryDirectory(prefix="fuzzytrack-") as folder:
         source, library = Path(folder, "code.c"), Path(folder, "code.so")
         source.write_text(text, encoding="utf-8")
-        command = [program, *_ALWAYS, *flags, str(source), "-o", str(library)]
+        command = [*program, *_ALWAYS, *flags, str(source), "-o", str(library)]
         done = subprocess.run(
             [*command, "-lm"] if link else command,
             capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"},
@@ -70,6 +85,6 @@ def built(
         if done.returncode:
             errors = [line for line in done.stderr.splitlines() if "error" in line]
             first = (errors or done.stderr.splitlines() or ["no message"])[0]
-            raise CompilerError(f"{Path(program).name}: {first.replace(folder + os.sep, '')}")
+            raise CompilerError(f"{Path(program[0]).name}: {first.replace(folder + os.sep, '')}")
         # It stays loaded when the file is gone.
         return ctypes.CDLL(str(library))

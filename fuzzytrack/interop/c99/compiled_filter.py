@@ -176,7 +176,8 @@ def compiled_c(
     axes, number, libm
         As for `fuzzytrack.interop.c99.filter.translated_filter`.
     compiler : str, optional
-        ``cc``, ``gcc`` or ``clang``, the first that is installed, unless given.
+        Its command. Unless given, that in the environment variable ``CC``, as for make; without
+        it ``cc``, ``gcc`` or ``clang``, the first that is installed.
     flags : sequence of str
         Options of the compiler, such as ``("-O3", "-march=native")``. Options that let it change
         the order of operations, such as ``-ffast-math``, give other results.
