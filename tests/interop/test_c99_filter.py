@@ -9,6 +9,7 @@ import pytest
 from test_conformance import SCHEDULERS, TRACKERS
 
 import fuzzytrack as ft
+from fuzzytrack.fuzzy.loading import rulebase_path
 from fuzzytrack.interop.c99.build import CompilerError, find_compiler
 from fuzzytrack.interop.c99.compiled_filter import compiled_c
 from fuzzytrack.interop.c99.compiled_lanes import FAST, CompiledLanes
@@ -133,10 +134,44 @@ def test_a_step_refuses_what_the_library_refuses(maneuver, plot, time, sigma, wo
     np.testing.assert_array_equal(states, before)
 
 
+def curved_schedule():
+    """A rule base whose sets need numbers beyond the range of floats."""
+    text = rulebase_path("omega-schedule").read_text()
+    return ft.loads_rulebase(
+        text.replace(
+            "{trimf: [-0.6866666666666666, 0, 0.6866666666666666]}", "{gbellmf: [0.5, 3, 0]}"
+        )
+    )
+
+
+@pytest.mark.untraced
+@pytest.mark.parametrize("of", ["imm", "gbellmf"])
+def test_floats_around_a_step_in_double_err_by_a_rounding(of):
+    tracker = (
+        TRACKERS["imm"]
+        if of == "imm"
+        else ft.AlphaBetaTracker(ft.FuzzyScheduler(curved_schedule()))
+    )
+    t, z, sigma = plots(2, 300, tracker.coupled)
+    z, sigma = z.astype(np.float32), sigma.astype(np.float32)
+    compiled = compiled_c(tracker, axes=2, number="float", flags=(*STRICT, "-Wdouble-promotion"))
+    assert (compiled.translation.number, compiled.translation.inside) == ("float", "double")
+    assert compiled.start().shape[1] == compiled.translation.state_bytes
+    found, exact = compiled.run(t, z, sigma), tracker.run(t, z.astype(float), sigma.astype(float))
+    for name in VECTORS:
+        np.testing.assert_array_max_ulp(
+            getattr(found, name), getattr(exact, name).astype(np.float32), 0
+        )
+
+
 def test_a_track_beyond_all_numbers_is_said():
     tracker = compiled_c("fixed:alpha=1:beta=1", flags=("-O0",))
     with pytest.raises(ft.DataError, match="start it again"):
         tracker.run([0.0, 1.0, 2.0], [1e308, -1e308, 1e308])
+    # Finite in double, where the step calculates, but not among the results.
+    tracker = compiled_c(TRACKERS["bank, best"], number="float", flags=("-O0",))
+    with pytest.raises(ft.DataError, match="start it again"):
+        tracker.run([0.0, 1.0, 2.0], [3e38, -3e38, 3e38], 1.0)
 
 
 def test_misses_need_no_standard_deviation_and_tracks_may_have_no_plot(maneuver):

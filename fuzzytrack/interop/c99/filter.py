@@ -11,7 +11,8 @@ import numpy as np
 
 from fuzzytrack.interop.c99.compiled import DTYPES
 from fuzzytrack.interop.c99.function_writer import written_function
-from fuzzytrack.interop.c99.program import Program
+from fuzzytrack.interop.c99.program import Program, number_text
+from fuzzytrack.interop.c99.python_source import FloatRangeError
 from fuzzytrack.interop.c99.translation import INCLUDES, Translation
 from fuzzytrack.interop.c99.values import Fixed, Room
 from fuzzytrack.lanes.layout import GAINS, Rows
@@ -55,6 +56,8 @@ class FilterTranslation(Translation):
     ----------
     axes : int
         Axes of space.
+    inside : {"double", "float"}
+        Type in which a step calculates and keeps its memory; `number` is that of plots and results.
     gain_sets : int
         Sets of gains of a track.
     state_bytes, stack_bytes : int
@@ -64,6 +67,7 @@ class FilterTranslation(Translation):
     """
 
     axes: int
+    inside: str
     gain_sets: int
     state_bytes: int
     stack_bytes: int
@@ -109,17 +113,29 @@ def translated_filter(
     Notes
     -----
     Written from the step of the tracker's `fuzzytrack.lanes.program.LaneProgram`, which also runs
-    in Python and compiled. So it does the same operations, in the same order.
+    in Python and compiled. So it does the same operations, in the same order. A step that needs
+    numbers beyond the range of floats calculates in double precision, and its results are rounded.
     """
     if not isinstance(axes, int) or not 1 <= axes <= MOST_AXES:
         raise ValueError(f"axes must be a whole number from 1 to {MOST_AXES}, got {axes!r}")
     lane_axes = axes if tracker.coupled else 1
-    taken = [f"{name}_{part}" for part in ("state", "init", "step", *STATUS)]
-    parts = Program(name, number, libm, taken)
     lane = tracker.program(lane_axes)
+    try:
+        return _translated(tracker, lane, name, axes, number, number, libm)
+    except FloatRangeError:
+        return _translated(tracker, lane, name, axes, number, "double", libm)
+
+
+def _translated(
+    tracker: LaneTracker, lane: LaneProgram, name: str, axes: int, number: str, inside: str,
+    libm: Sequence[str],
+) -> FilterTranslation:  # fmt: skip
+    """A tracker that calculates in one type of number, and takes and gives another."""
+    taken = [f"{name}_{part}" for part in ("state", "init", "step", *STATUS)]
+    parts = Program(name, inside, libm, taken)
     step: Any = lane.step(1)
     written = written_function(parts, step, (Room(lane.rows.total), Fixed(1)))
-    template = _Template(parts, tracker, lane, axes, written.name)
+    template = _Template(parts, tracker, lane, axes, written.name, number)
     before = parts.definitions()
     return FilterTranslation(
         name=name,
@@ -133,9 +149,10 @@ def translated_filter(
         operations={key: count * template.lanes for key, count in sorted(written.costs.items())},
         constants_bytes=parts.constants_bytes,
         axes=axes,
+        inside=inside,
         gain_sets=template.gain_sets,
         state_bytes=template.state_bytes,
-        stack_bytes=lane.rows.total * template.size,
+        stack_bytes=lane.rows.total * _size(inside),
         needs_sigma=tracker.needs_sigma,
     )
 
@@ -151,17 +168,22 @@ class _Template:
     axes : int
     step : str
         Name of the step in C.
+    number : str
+        Type of plots and results.
     """
 
     def __init__(
-        self, parts: Program, tracker: LaneTracker, lane: LaneProgram, axes: int, step: str
-    ) -> None:
+        self, parts: Program, tracker: LaneTracker, lane: LaneProgram, axes: int, step: str,
+        number: str,
+    ) -> None:  # fmt: skip
         self.parts, self.tracker, self.lane, self.step = parts, tracker, lane, step
         self.axes, self.rows = axes, lane.rows
-        self.name, self.number = parts.name, parts.number
+        self.name, self.number, self.inside = parts.name, number, parts.number
+        #: What a result is preceded by, and a plot.
+        self.given = "" if number == self.inside else f"({number})"
+        self.taken = "" if number == self.inside else f"({self.inside})"
         self.lanes = axes // self.rows.n_axes
         self.gain_sets = self.lanes * self.rows.gain_sets
-        self.size = int(np.dtype(DTYPES[parts.number]).itemsize)
         self.elapsed = tracker.missed == "elapsed"
         self.prototype = (
             f"int32_t {self.name}_step({self.name}_state *state, double time, "
@@ -171,8 +193,9 @@ class _Template:
     @property
     def state_bytes(self) -> int:
         """Size of the struct."""
-        numbers = self.lanes * self.rows.state + len(_SHOWN) * self.axes + 3 * self.gain_sets
-        return 8 * (1 + self.lanes) + -(-numbers * self.size // 8) * 8
+        kept = self.lanes * self.rows.state * _size(self.inside)
+        shown = (len(_SHOWN) * self.axes + 3 * self.gain_sets) * _size(self.number)
+        return 8 * (1 + self.lanes) + -(-(kept + shown) // 8) * 8
 
     def text(self) -> str:
         """Struct, enumeration and functions."""
@@ -191,7 +214,7 @@ class _Template:
             "typedef struct {",
             "    double time;",
             f"    double plot_time[{self.lanes}];",
-            f"    {self.number} kept[{self.lanes}][{self.rows.state}];",
+            f"    {self.inside} kept[{self.lanes}][{self.rows.state}];",
             *(line.rstrip() for line in shown),
             f"}} {self.name}_state;",
             "",
@@ -209,12 +232,12 @@ class _Template:
         fresh[: rows.n_axes] = math.nan
         fresh[rows.memory : rows.state] = self.lane.memory
         digits = [self.parts.digits(float(value)) for value in fresh]
-        nan = self.parts.digits(math.nan)
+        nan = number_text(math.nan, self.number)
         return [
             "/* A track before its first plot. */",
             f"FUZZYTRACK_INLINE void {self.name}_init({self.name}_state *state)",
             "{",
-            f"    static const {self.number} fresh[{len(digits)}] = {{",
+            f"    static const {self.inside} fresh[{len(digits)}] = {{",
             *_filled(digits),
             "    };",
             "    int32_t k;",
@@ -234,12 +257,12 @@ class _Template:
 
     def _step(self) -> list[str]:
         rows, n = self.rows, self.rows.n_axes
-        infinity = self.parts.digits(math.inf)
+        infinity = number_text(math.inf, self.number)
         return [
             "/* One step: a plot (NaN where it was missed) at a time later than the last one. */",
             *_broken(f"FUZZYTRACK_INLINE {self.prototype}"),
             "{",
-            f"    {self.number} b[{rows.total}];",
+            f"    {self.inside} b[{rows.total}];",
             "    bool finite = true;",
             "    int32_t k;",
             "    int32_t j;",
@@ -261,17 +284,17 @@ class _Template:
             "        (void)memset(b, 0, sizeof b);",
             "        (void)memcpy(b, state->kept[k], sizeof state->kept[k]);",
             f"        for (j = 0; j < {n}; ++j) {{",
-            f"            const {self.number} z = plot[{_sum(_product('k', n), 'j')}];",
+            f"            const {self.inside} z = {self.taken}plot[{_sum(_product('k', n), 'j')}];",
             f"            b[{_sum('j', rows.plot)}] = z;",
             f"            b[{_sum('j', rows.sigma)}] = "
             + (
-                f"sigma[{_sum(_product('k', n), 'j')}];"
+                f"{self.taken}sigma[{_sum(_product('k', n), 'j')}];"
                 if self.tracker.needs_sigma
                 else f"{self.parts.digits(math.nan)};"
             ),
             "            seen = seen && z == z;",
             "        }",
-            f"        b[{rows.dt}] = started ? ({self.number})(time - state->plot_time[k]) : "
+            f"        b[{rows.dt}] = started ? ({self.inside})(time - state->plot_time[k]) : "
             f"{self.parts.digits(0.0)};",
             f"        {self.step}(b);",
             *self._kept(),
@@ -284,7 +307,7 @@ class _Template:
     def _sigma_check(self) -> list[str]:
         if not self.tracker.needs_sigma:
             return []
-        low, high = map(self.parts.digits, SIGMAS[DTYPES[self.number]])
+        low, high = (number_text(s, self.number) for s in SIGMAS[DTYPES[self.number]])
         return [
             f"        if (plot[k] == plot[k] && !(sigma[k] >= {low} && sigma[k] <= {high})) {{",
             f"            return {self.name}_SIGMA;",
@@ -310,11 +333,13 @@ class _Template:
         gains = _sum(_product("k", rows.gain_sets), "j")
         zero = self.parts.digits(0.0)
         waits = f"!(b[{rows.plots}] > {zero})"
-        tests = " && ".join(f"{b} - {b} == {zero}" for b in (f"b[{_sum('j', k)}]" for k in first))
+        nothing = number_text(0.0, self.number)
+        results = (f"state->{name}[{target}]" for name in _SHOWN[:3])
+        tests = " && ".join(f"{x} - {x} == {nothing}" for x in results)
         return [
             f"        for (j = 0; j < {n}; ++j) {{",
             *(
-                f"            state->{name}[{target}] = b[{_sum('j', place)}];"
+                f"            state->{name}[{target}] = {self.given}b[{_sum('j', place)}];"
                 for name, place in places.items()
             ),
             # A difference of infinite numbers, or of NaN, is NaN.
@@ -322,11 +347,16 @@ class _Template:
             "        }",
             f"        for (j = 0; j < {rows.gain_sets}; ++j) {{",
             *(
-                f"            state->{name}[{gains}] = b[{_sum('j', rows.output(name))}];"
-                for name in GAINS
+                f"            state->{name}[{gains}] = {self.given}b[{_sum('j', place)}];"
+                for name, place in ((name, rows.output(name)) for name in GAINS)
             ),
             "        }",
         ]
+
+
+def _size(number: str) -> int:
+    """Bytes of a number."""
+    return int(np.dtype(DTYPES[number]).itemsize)
 
 
 def _product(name: str, factor: int) -> str:

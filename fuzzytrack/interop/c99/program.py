@@ -15,7 +15,7 @@ import numpy as np
 from fuzzytrack.interop.c99.arithmetic import TYPES, arithmetic
 from fuzzytrack.interop.c99.blocks import Block, Costs
 from fuzzytrack.interop.c99.identifiers import is_free_name
-from fuzzytrack.interop.c99.python_source import Definition
+from fuzzytrack.interop.c99.python_source import Definition, FloatRangeError
 from fuzzytrack.interop.c99.values import (
     NUMBER,
     POSTFIX,
@@ -32,7 +32,7 @@ from fuzzytrack.interop.c99.values import (
 )
 from fuzzytrack.kernels.rebuild import rounded, table
 
-__all__ = ["Program", "Written"]
+__all__ = ["Program", "Written", "number_text"]
 
 #: Functions of C's mathematical library that Python's `math` has with the same meaning.
 _LIBRARY = frozenset(
@@ -192,20 +192,15 @@ class Program:
 
     def digits(self, value: float) -> str:
         """A number, written out."""
-        if math.isnan(value):
-            return f"({self.number})NAN"
-        if math.isinf(value):
-            return f"{'-' if value < 0 else ''}({self.number})INFINITY"
-        text = str(np.float32(value)) if self.number == "float" else repr(value)
-        text = text if any(c in text for c in ".e") else f"{text}.0"
-        return text + ("f" if self.number == "float" else "")
+        return number_text(value, self.number)
 
     def _checked(self, definition: Definition, node: ast.AST, value: float) -> float:
         if self.number == "float":
             try:
                 rounded(value, np.float32)
             except ValueError:
-                definition.refuse(node, f"works with {value:g}, which float lacks; use double")
+                what = f"works with {value:g}, which float lacks; use double"
+                definition.refuse(node, what, FloatRangeError)
         return value
 
     def literal(self, definition: Definition, node: ast.AST, value: float) -> Scalar:
@@ -226,7 +221,8 @@ class Program:
             try:
                 table(tuple(values), np.float32)
             except ValueError:
-                definition.refuse(node, "works with numbers that float lacks; use double")
+                what = "works with numbers that float lacks; use double"
+                definition.refuse(node, what, FloatRangeError)
         return self._constant(name, tuple(values))
 
     def _constant(self, name: str, value: float | tuple[float, ...]) -> str:
@@ -323,6 +319,17 @@ class Program:
             name = f"{base}_{count}"
         self._names.add(name)
         return name
+
+
+def number_text(value: float, number: str) -> str:
+    """A number as an expression of a type of number."""
+    if math.isnan(value):
+        return f"({number})NAN"
+    if math.isinf(value):
+        return f"{'-' if value < 0 else ''}({number})INFINITY"
+    text = str(np.float32(value)) if number == "float" else repr(value)
+    text = text if any(c in text for c in ".e") else f"{text}.0"
+    return text + ("f" if number == "float" else "")
 
 
 def _integers(values: Sequence[float]) -> bool:

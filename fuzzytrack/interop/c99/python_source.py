@@ -23,6 +23,10 @@ class TranslationError(FileError):
     """A function that cannot be written in C; names the function and the place in its file."""
 
 
+class FloatRangeError(TranslationError):
+    """A function works with a number that is too large or too small for 32 bits."""
+
+
 @dataclass(frozen=True, eq=False)
 class Definition:
     """A function and its syntax tree.
@@ -76,13 +80,13 @@ class Definition:
             raise KeyError(name)
         return found
 
-    def refuse(self, node: ast.AST, what: str) -> NoReturn:
-        """Raise TranslationError about a part of the function."""
+    def refuse(
+        self, node: ast.AST, what: str, error: type[TranslationError] = TranslationError
+    ) -> NoReturn:
+        """Raise an error about a part of the function."""
         line = getattr(node, "lineno", self.function.__code__.co_firstlineno)
         column = getattr(node, "col_offset", 0) + 1
-        raise TranslationError(
-            f"the function {self.name} {what}", Location(self.file, line, column)
-        )
+        raise error(f"the function {self.name} {what}", Location(self.file, line, column))
 
 
 def readable_name(function: FunctionType) -> str:
