@@ -110,7 +110,8 @@ def compiled(made: CExport, compiler: str | None) -> Callable[[Any], Any]:
 
 def filter_row(name: str, number: str, compiler: str | None) -> list[str]:
     """Largest errors of a filter over turning tracks with missed plots."""
-    bounds = export_c(name, number=number, filter=True, random=1).figures["filter"]["errors"]
+    figures = export_c(name, number=number, filter=True, random=1).figures["filter"]
+    bounds = figures["errors_allowed"]
     random = np.random.default_rng(30)
     times = np.cumsum(random.uniform(0.5, 1.5, 100))
     angle = 0.05 * times[:, None] + random.uniform(0, 6, PLOTS // 100)

@@ -14,6 +14,7 @@ __all__ = [
     "NoRuleFiresWarning",
     "PluginError",
     "PluginWarning",
+    "PrecisionWarning",
     "RuleBaseError",
     "ScannerError",
     "ScenarioError",
@@ -107,6 +108,10 @@ class NoRuleFiresWarning(UserWarning):
 
 class PluginWarning(UserWarning):
     """A plug-in was skipped: it could not be loaded, or its name is taken."""
+
+
+class PrecisionWarning(UserWarning):
+    """Numbers of 32 bits are too few for a filter: its errors are large beside noise of plots."""
 
 
 class TrackWarning(UserWarning):

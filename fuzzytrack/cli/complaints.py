@@ -16,6 +16,7 @@ from fuzzytrack.errors import (
     FileError,
     NoRuleFiresWarning,
     PluginWarning,
+    PrecisionWarning,
     TrackWarning,
     in_one_sentence,
 )
@@ -26,6 +27,10 @@ __all__ = ["Command", "Commands", "one_line", "printable"]
 # Arguments in a message: at its beginning, as in "jobs: ..." or "jobs and scheduler: ...", and
 # anywhere in backquotes.
 _ARGUMENTS = re.compile(r"^\w+(?: and \w+)*(?=: )|`\w+`")
+
+
+# Warnings that commands show.
+_SHOWN = (CacheWarning, NoRuleFiresWarning, PluginWarning, PrecisionWarning, TrackWarning)
 
 
 class Command(TyperCommand):
@@ -66,7 +71,7 @@ class Commands(TyperGroup):
         with warnings.catch_warnings():
             warnings.showwarning = _show_warning  # type: ignore[assignment]
             # Each line once in a command, which may run a tracker many times.
-            for category in (CacheWarning, NoRuleFiresWarning, PluginWarning, TrackWarning):
+            for category in _SHOWN:
                 warnings.simplefilter("default", category)
             try:
                 status = super().main(*args, **extra)

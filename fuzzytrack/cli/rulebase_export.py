@@ -100,9 +100,13 @@ def _summary(figures: Mapping[str, Any]) -> list[str]:
     stack = "" if figures["ram_bytes"] is None else f", stack {figures['ram_bytes']} bytes"
     moving = figures.get("filter")
     if moving:
-        errors = ", ".join(f"{word} {show(e, 2)}" for word, e in moving["errors"].items())
-        filter_line = f"filter      {moving['ram_bytes_per_track']} bytes a track; error {errors}"
-        lines.append(filter_line)
+        met = moving["errors_met"]
+        errors = met or moving["errors_allowed"]
+        words = ", ".join(f"{word} {show(e, 2)}" for word, e in errors.items())
+        how = "met in a trial, which is no bound" if met else "at most"
+        lines.append(
+            f"filter      {moving['ram_bytes_per_track']} bytes a track; error {words}: {how}"
+        )
     return [
         *lines,
         f"memory      ROM {figures['rom_bytes']} bytes and the code{stack}",
