@@ -98,7 +98,8 @@ class Asterix(Reader):
         rows = _rows(chain((first,), plots), tuple(types))
         description = CATEGORIES[record.category].description(types, "id" in types)
         origin = f"of category {record.category:03d} from source {cells['source']}"
-        return RecordSource(stream, types, description, rows, losses, [f"plots {origin}"], origin)
+        notes = [f"plots {origin}", *CATEGORIES[record.category].notes]
+        return RecordSource(stream, types, description, rows, losses, notes, origin)
 
     def _plots(self, stream: ByteStream, losses: Losses) -> Iterator[tuple[Record, Cells]]:
         """Records that are plots, all of the category, source and position of the first."""

@@ -33,6 +33,11 @@ _RECORD = 4_096
 # Bytes that may be decoded in vain, and one more for each that has been read: so time grows with
 # the file, whatever it holds.
 _IN_VAIN = 8_192
+# Category 021 before edition 1.0 has other items in other places: what each record must have now,
+# and what each had to have then.
+_CHANGED = 21
+_MUST, _MUST_OLD = ("010", "040", "080"), ("010", "030", "040")
+_OLD_BLOCKS = "blocks of category 021 in an edition before 1.0, which are not read"
 _CAPTURES = (b"\xd4\xc3\xb2\xa1", b"\xa1\xb2\xc3\xd4", b"\x4d\x3c\xb2\xa1", b"\n\r\r\n")
 
 
@@ -112,6 +117,9 @@ def records(stream: ByteStream, losses: Losses) -> Iterator[Record]:
             losses.add("bytes that are no block", place, bytes_of.skip())
             continue
         bytes_of.position = end
+        if category == _CHANGED and decoder.is_old(body, found, used):
+            losses.add(_OLD_BLOCKS, place)
+            continue
         if found is None:
             losses.add(f"blocks of category {category:03d}", place)
             continue
@@ -194,6 +202,7 @@ class _Decoder:
         editions = generated.manifest["CATS"]
         self.known = frozenset((*editions, *_OTHERS))
         newest = {category: editions[category][-1] for category in CATEGORIES}
+        self._old = [each.cv_record for each in editions[_CHANGED] if each.cv_edition < (1, 0)]
         self._records = {
             category: newest[category].cv_record for category in CATEGORIES if category != 1
         }
@@ -203,20 +212,36 @@ class _Decoder:
         """Records of a block, and the number of bytes that they fill; None if not decoded."""
         if category not in CATEGORIES:
             return None, 0
+        return self._decoded(self._records.get(category), body)
+
+    def is_old(self, body: bytes, found: list[Any] | None, used: int) -> bool:
+        """Whether only an edition that is not read explains a block of category 021 to its end.
+
+        The others are `found` and `used` as `decode` gave them.
+        """
+        if used == len(body) and _all_have(_MUST, found):
+            return False
+        for kind in self._old:
+            older, length = self._decoded(kind, body)
+            if length == len(body) and _all_have(_MUST_OLD, older):
+                return True
+        return False
+
+    def _decoded(self, kind: Any, body: bytes) -> tuple[list[Any], int]:
+        """Records of one kind that follow each other, and the number of bytes that they fill."""
         found = []
         position = 0
         while position < len(body):
-            record, length = self._record(category, body, position)
+            record, length = self._record(kind, body[position : position + _RECORD])
             if record is None:
                 break
             found.append(record)
             position += length
         return found, position
 
-    def _record(self, category: int, body: bytes, position: int) -> tuple[Any, int]:
-        """Record that begins at a place, and its length; None if there is none."""
-        part = body[position : position + _RECORD]
-        kind = self._records.get(category) or self._kind(part)
+    def _record(self, kind: Any, part: bytes) -> tuple[Any, int]:
+        """Record that begins with these bytes, and its length; None if there is none."""
+        kind = kind or self._plot_or_track(part)
         # A third-party parser of bytes from anywhere: whatever it raises, these are no record.
         try:
             result = kind.parse(
@@ -229,7 +254,7 @@ class _Decoder:
         record, rest = result
         return record, len(part) - len(rest) // 8
 
-    def _kind(self, part: bytes) -> Any:
+    def _plot_or_track(self, part: bytes) -> Any:
         """Plot or track of category 001, which have different items: the first bit of I001/020."""
         fields = next((place for place, byte in enumerate(part, 1) if not byte & 1), len(part))
         has_source, has_kind = part[0] & 0x80, part[0] & 0x40
@@ -237,3 +262,7 @@ class _Decoder:
         if has_kind and place < len(part) and part[place] & 0x80:
             return self._track
         return self._plot
+
+
+def _all_have(items: tuple[str, ...], found: list[Any] | None) -> bool:
+    return all(record.get_item(item) is not None for record in found or () for item in items)

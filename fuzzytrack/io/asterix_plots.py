@@ -44,11 +44,14 @@ class Category:
         When its clock falls back to zero (s).
     identities : tuple of str
         Columns of which the first that a record has is its identity.
+    notes : tuple of str
+        What the user of its plots should know.
     """
 
     cells: Callable[[Any], Cells]
     wrap: float
     identities: tuple[str, ...] = IDENTITIES
+    notes: tuple[str, ...] = ()
 
     def description(self, names: Mapping[str, object], identified: bool) -> PlotDescription:
         """What the columns are, of those that there are."""
@@ -206,7 +209,11 @@ def _cells_062(record: Any) -> Cells:
 
 #: Categories by their numbers.
 CATEGORIES = {
-    1: Category(_cells_001, _TRUNCATED),
+    1: Category(
+        _cells_001,
+        _TRUNCATED,
+        notes=("times of category 001 are truncated: silences of 512 s or more look shorter",),
+    ),
     21: Category(_cells_021, _DAY),
     48: Category(_cells_048, _DAY),
     # A system track has a number in any case, and an address in some of its records only.

@@ -184,6 +184,30 @@ def test_category_021(tmp_path):
     assert (description.geodetic, description.wrap) == (("lat", "lon"), 86400.0)
 
 
+@pytest.mark.parametrize("edition", generated.manifest["CATS"][21][:4])
+def test_old_editions_of_category_021_are_counted_and_not_read(tmp_path, edition):
+    assert edition.cv_edition < (1, 0)
+    assert CATS[21].cv_edition > (1, 0)
+    # Items that each of them had, the time (030) among them.
+    values = {
+        "010": (("SAC", 1), ("SIC", 2)),
+        "040": 0x2000,
+        "030": (43200.0, "s"),
+        "130": (("LAT", (45.5, "°")), ("LON", (7.25, "°"))),
+        "080": 0xABCDEF,
+        "145": (330.0, "FL"),
+    }
+    old = edition.create([edition.cv_record.create(values)] * 3).unparse().to_bytes()
+    with pytest.raises(DataError, match=r"before 1\.0, which are not read: 2 left"):
+        read(written(tmp_path, old + old, "old.ast"))
+    columns, _, notes = read(written(tmp_path, GOOD + old + GOOD, "a.ast"))
+    assert columns["id"] == ["4840D6"] * 2
+    assert notes[1:] == [
+        "blocks of category 021 in an edition before 1.0, which are not read: 1 left out, first at "
+        f"byte {len(GOOD)}"
+    ]
+
+
 def test_a_circle_of_category_021_holds_95_percent():
     rng = np.random.default_rng(1)
     radius = np.hypot(*rng.normal(scale=10 / math.sqrt(-2 * math.log(0.05)), size=(2, 10**6)))
