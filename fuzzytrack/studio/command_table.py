@@ -29,7 +29,7 @@ __all__ = ["HANDLERS", "find_handler"]
 def hello(page: Page, given: Arguments) -> Later:
     """All that a page needs when it is opened."""
     state, scenario = state_of(page), scenario_state(page)
-    job, run = page.job, page.run_job
+    jobs = list(page.jobs.values())
 
     def work() -> Mapping[str, Any]:
         return {
@@ -42,9 +42,7 @@ def hello(page: Page, given: Arguments) -> Later:
             "trackers": page.studio.trackers(),
             "commands": list(HANDLERS),
             "limits": LIMITS,
-            "job": None if job is None else job.as_json(True),
-            # The last experiment, where the last job was a tuning.
-            "run": None if run in (None, job) else run.as_json(True),
+            "jobs": [job.as_json(True) for job in jobs],
         }
 
     return Later(work)

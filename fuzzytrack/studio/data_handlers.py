@@ -9,13 +9,13 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.specs import is_file, split
 from fuzzytrack.studio.arguments import Arguments, renamed
-from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MESSAGE_BYTES
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.reading_arguments import READING, reading_options
-from fuzzytrack.studio.recorded import Recorded, summary_of, tracked_as_json
+from fuzzytrack.studio.recorded import Recorded, summary_of
 from fuzzytrack.studio.run_handlers import trackers_of
+from fuzzytrack.studio.track_jobs import track_work
 from fuzzytrack.studio.tracker_texts import EDITOR, check_place
 from fuzzytrack.studio.tune_jobs import Tuning, tune_work
 
@@ -35,9 +35,10 @@ def upload(page: Page, given: Arguments) -> Later:
 
 
 def recording(page: Page, given: Arguments) -> Later:
-    """Say what is in a recording."""
+    """Say what is in a recording; the page no longer waits for tracks of what it said before."""
     name = given.text("name")
     found = _recorded(page, name, given)
+    page.end("track")
 
     def work() -> Answer:
         told = {"name": name, "columns": found.columns(), "problem": None}
@@ -61,15 +62,14 @@ def _recorded(page: Page, name: str, given: Arguments) -> Recorded:
 
 
 def track(page: Page, given: Arguments) -> Later:
-    """Track a recording with some trackers, and compare them."""
-    name = given.text("name")
-    found = _recorded(page, name, given)
+    """Start to track a recording with some trackers, and to compare them."""
+    found = _recorded(page, given.text("name"), given)
     make = trackers_of(page, given.texts("trackers"))
 
     def work() -> Answer:
         trackers = make()
-        with naming(found.path):
-            return {"name": name, **tracked_as_json(found.read(), trackers)}
+        page.end("track")
+        return {"job": page.start("track", _STEPS, track_work(found, trackers)).number}
 
     return Later(work)
 
@@ -95,8 +95,7 @@ def tune(page: Page, given: Arguments) -> Later:
     )
 
     def work() -> Answer:
-        page.job = page.studio.jobs.start("tune", _STEPS, tune_work(tuning), page.report)
-        return {"job": page.job.number}
+        return {"job": page.start("tune", _STEPS, tune_work(tuning)).number}
 
     return Later(work)
 

@@ -8,14 +8,14 @@ import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from itertools import count
-from typing import Any
+from typing import Any, Protocol
 
 from fuzzytrack.errors import in_one_sentence
 from fuzzytrack.studio.limits import SILENCE
 from fuzzytrack.studio.notes import noted
 from fuzzytrack.workers import end_processes, process_pool
 
-__all__ = ["CancelledJobError", "Job", "Jobs", "Report", "Work"]
+__all__ = ["CancelledJobError", "Job", "Jobs", "Owner", "Work"]
 
 # Shortest time between two reports of one job, s.
 _PAUSE = 0.1
@@ -25,6 +25,17 @@ _MOST_PROCESSES = 8
 
 class CancelledJobError(Exception):
     """Raised in the thread of a job that has been canceled, where it reports progress."""
+
+
+class Owner(Protocol):
+    """Who has started a job, and is told of it; see `fuzzytrack.studio.pages.Page`."""
+
+    @property
+    def gone(self) -> bool:
+        """Whether nobody looks at its jobs any more."""
+
+    def report(self, job: Job, with_results: bool) -> None:
+        """Hear of a change of a job, in the thread in which it changes."""
 
 
 class Job:
@@ -37,20 +48,19 @@ class Job:
         Such as ``run``.
     of : int
         How much there is to be done, in units that a reader counts.
-    report : callable
-        Called with the job and whether it has new results whenever something changes, in the thread
-        in which it changes.
+    owner : Owner
+        Is told of every change.
     """
 
-    def __init__(self, number: int, kind: str, of: int, report: Report) -> None:
+    def __init__(self, number: int, kind: str, of: int, owner: Owner) -> None:
         self.number = number
         self.kind = kind
         self.of = of
+        self.owner = owner
         self.state = "running"
         self.error: str | None = None
         self.results: dict[str, Any] | None = None
         self.notes: list[str] = []
-        self._report = report
         self._share = 0.0
         self._begun = self._heard = time.monotonic()
         self._reported = 0.0
@@ -69,7 +79,7 @@ class Job:
 
     def begin(self) -> None:
         """Tell that it runs, before there is progress, which may take a while."""
-        self._report(self, False)
+        self.owner.report(self, False)
 
     def progress(self, share: float) -> None:
         """Take in how much is done; called by the work.
@@ -85,13 +95,13 @@ class Job:
         self._share = share
         if self._heard - self._reported >= _PAUSE:
             self._reported = self._heard
-            self._report(self, False)
+            self.owner.report(self, False)
 
     def show(self, results: dict[str, Any]) -> None:
         """Take in results of a part of the work; called by the work."""
         if self.running:
             self.results = results
-            self._report(self, True)
+            self.owner.report(self, True)
 
     def end(self, state: str, error: str | None = None) -> bool:
         """End the job, unless it has ended already; whether it has ended by this."""
@@ -99,7 +109,7 @@ class Job:
             if not self.running:
                 return False
             self.state, self.error, self._ended = state, error, time.monotonic()
-        self._report(self, False)
+        self.owner.report(self, False)
         return True
 
     def finish(self, results: dict[str, Any]) -> None:
@@ -109,7 +119,7 @@ class Job:
                 return
             self.results, self._share, self.state = results, 1.0, "done"
             self._ended = time.monotonic()
-        self._report(self, True)
+        self.owner.report(self, True)
 
     def as_json(self, results: bool) -> dict[str, Any]:
         """The job as the page is told of it."""
@@ -128,8 +138,6 @@ class Job:
         }
 
 
-#: Called with a job, and whether it has new results.
-Report = Callable[[Job, bool], None]
 #: Does the work of a job with some processes, and returns its results.
 Work = Callable[[Job, ProcessPoolExecutor], dict[str, Any]]
 
@@ -153,8 +161,8 @@ class Jobs:
         self._current: Job | None = None
         self._lock = threading.Lock()
 
-    def start(self, kind: str, of: int, work: Work, report: Report) -> Job:
-        """Start a job.
+    def start(self, kind: str, of: int, work: Work, owner: Owner) -> Job:
+        """Start a job; one whose owner is gone ends for it.
 
         Raises
         ------
@@ -163,29 +171,38 @@ class Jobs:
         """
         with self._lock:
             self.check()
-            if self._current is not None and self._current.running:
-                raise ValueError(
-                    f"a job ({self._current.kind}) is running; wait for its end, or cancel it"
-                )
-            job = self._current = Job(next(self._numbers), kind, of, report)
+            current = self._current
+            if current is not None and current.running:
+                if current.owner is owner:
+                    raise ValueError(
+                        f"a job ({current.kind}) is running; wait for its end, or cancel it"
+                    )
+                if not current.owner.gone:
+                    raise ValueError(
+                        f"a job ({current.kind}) of another page is running; wait for its end, or "
+                        "cancel it there"
+                    )
+                self._cancel(current)
+            job = self._current = Job(next(self._numbers), kind, of, owner)
             pool = self._pool = self._pool or process_pool(_processes())
         # Not one of a pool of threads: a plug-in that hangs would keep the server from ending.
         threading.Thread(target=self._do, args=(job, work, pool), daemon=True).start()
         return job
 
-    def cancel(self, number: int) -> Job:
+    def cancel(self, number: int, owner: Owner) -> Job:
         """Cancel a job; one that has ended stays as it is.
 
         Raises
         ------
         ValueError
-            If no such job is known any more.
+            If no such job is known any more, or it is not one of this owner.
         """
         job = self._current
         if job is None or job.number != number:
             raise ValueError(f"job: no job {number} is running")
-        if job.end("cancelled"):
-            self._drop()
+        if job.owner is not owner:
+            raise ValueError(f"job: {number} is a job of another page; cancel it there")
+        self._cancel(job)
         return job
 
     def check(self) -> None:
@@ -201,6 +218,10 @@ class Jobs:
         if self._current is not None:
             self._current.end("cancelled")
         self._drop()
+
+    def _cancel(self, job: Job) -> None:
+        if job.end("cancelled"):
+            self._drop()
 
     def _drop(self) -> None:
         pool, self._pool = self._pool, None

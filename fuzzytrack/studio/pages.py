@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from fuzzytrack.studio.folder import Folder
-from fuzzytrack.studio.jobs import Job, Jobs
+from fuzzytrack.studio.jobs import Job, Jobs, Work
 from fuzzytrack.studio.limits import MOST_SESSIONS, RESULT_BYTES
 from fuzzytrack.studio.messages import event
 from fuzzytrack.studio.run_jobs import Run
@@ -27,6 +27,8 @@ CommandLine = Callable[[str, Sequence[str], Mapping[str, object]], str]
 
 # Seconds that a command waits for the one before it.
 _PATIENCE = 20
+# Seconds without a browser after which nobody waits for the jobs of a page; a reload takes less.
+_AWAY = 10.0
 
 
 class Line(Protocol):
@@ -54,12 +56,10 @@ class Page:
     ----------
     version : int
         Grows with every change.
-    job : Job or None
-        The last one that the page has started.
+    jobs : dict of str to Job
+        The last one of each kind that the page has started, in the order in which they began.
     run : Run or None
         The last Monte Carlo experiment that the page has started.
-    run_job : Job or None
-        Its job.
     """
 
     def __init__(self, key: str, studio: Studio, session: Session) -> None:
@@ -69,9 +69,8 @@ class Page:
         self._lock = threading.Lock()
         self.version = 0
         self._drags = 0
-        self.job: Job | None = None
+        self.jobs: dict[str, Job] = {}
         self.run: Run | None = None
-        self.run_job: Job | None = None
         self.used = time.monotonic()
         self._connection: Line | None = None
 
@@ -106,6 +105,11 @@ class Page:
         """Whether a browser shows it now."""
         return self._connection is not None
 
+    @property
+    def gone(self) -> bool:
+        """Whether it was closed, and not only to be loaded again."""
+        return not self.connected and time.monotonic() - self.used > _AWAY
+
     def join(self, connection: Line) -> Line | None:
         """Take a connection; gives the one that it had."""
         before, self._connection = self._connection, connection
@@ -134,10 +138,23 @@ class Page:
         """
         if self.run is None or self.run.results is None:
             why = "there are no results yet; run an experiment to its end first"
-            if self.run_job is not None and self.run_job.state == "done":
+            if "run" in self.jobs and self.jobs["run"].state == "done":
                 why = "the results were dropped for large ones of another page; run it again"
             raise ValueError(why)
         return self.run.results
+
+    def start(self, kind: str, of: int, work: Work) -> Job:
+        """Start a job; see `fuzzytrack.studio.jobs.Jobs.start`."""
+        job = self.studio.jobs.start(kind, of, work, self)
+        self.jobs.pop(kind, None)
+        self.jobs[kind] = job
+        return job
+
+    def end(self, kind: str) -> None:
+        """End the job of a kind that the page has started, if it runs."""
+        job = self.jobs.get(kind)
+        if job is not None and job.running:
+            self.studio.jobs.cancel(job.number, self)
 
     def report(self, job: Job, with_results: bool) -> None:
         """Tell the page of a job."""

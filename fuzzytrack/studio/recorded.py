@@ -1,4 +1,4 @@
-"""Trackers on recorded plots, as the page shows them."""
+"""Recordings, as a page describes them, and what is in them."""
 
 from __future__ import annotations
 
@@ -14,22 +14,13 @@ import numpy as np
 
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.reading import Reading
-from fuzzytrack.io.recording import Track
-from fuzzytrack.recordings.ragged import run_tracks, sigmas_of
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
 from fuzzytrack.studio.folder import naming
-from fuzzytrack.studio.notes import by_name, noted
 from fuzzytrack.studio.reading_arguments import check_truth
 from fuzzytrack.studio.uploads import check_plots
-from fuzzytrack.testbed.marks import best_of
-from fuzzytrack.testbed.recorded_comparison import compare_used
-from fuzzytrack.testbed.recorded_scores import RecordedComparison, RecordedScore
-from fuzzytrack.trackers.base import Tracker
 
-__all__ = ["Recorded", "summary_of", "tracked_as_json"]
+__all__ = ["Recorded", "summary_of"]
 
-# Tracks and plots that are drawn.
-_TRACKS, _PLOTS = 8, 2_000
 # Characters of the first line that are read.
 _LINE = 100_000
 
@@ -134,107 +125,3 @@ def _noise_as_json(decoder: PlotDecoder) -> list[dict[str, Any]]:
         }
         for k, (sigma, error) in enumerate(zip(decoder.noise, errors, strict=True))
     ]
-
-
-def tracked_as_json(used: UsedPlots, trackers: Mapping[str, Tracker]) -> dict[str, Any]:
-    """Tracks of recorded plots, some of them to be drawn, and how the trackers compare.
-
-    Parameters
-    ----------
-    used : UsedPlots
-    trackers : mapping of str to Tracker
-
-    Returns
-    -------
-    dict
-        What `summary_of` gives; ``drawn``: the first tracks, with ``id``, ``time``,
-        ``plots``, ``truth`` and for each of ``trackers`` ``predicted``, ``filtered``,
-        ``innovation``; and ``comparison``: ``columns`` (key, title, unit) and ``rows``.
-    """
-    with noted() as warned:
-        compared = compare_used(dict(trackers), used)
-        drawn = [_track_as_json(track, used, trackers) for track in _drawn(used)]
-    summary = summary_of(used)
-    return {
-        **summary,
-        "notes": [*summary["notes"], *by_name(warned, trackers)],
-        "drawn": drawn,
-        "comparison": _comparison_as_json(compared),
-    }
-
-
-def _drawn(used: UsedPlots) -> list[Track]:
-    """Tracks that are drawn: the first ones, up to so many plots."""
-    found: list[Track] = []
-    left = _PLOTS
-    for track in used.tracks[:_TRACKS]:
-        if left < 2:
-            break
-        # A track without its end keeps the noise of its plots.
-        found.append(track.part(slice(0, left)) if len(track.time) > left else track)
-        left -= len(track.time)
-    return found
-
-
-def _track_as_json(
-    track: Track, used: UsedPlots, trackers: Mapping[str, Tracker]
-) -> dict[str, Any]:
-    pairs = [(track.time, track.plots)]
-    runs = {}
-    for name, tracker in trackers.items():
-        (result,) = run_tracks(tracker, pairs, sigmas=sigmas_of([track]))
-        runs[name] = {
-            "predicted": result.predicted,
-            "filtered": result.filtered,
-            "innovation": result.innovation,
-        }
-    return {
-        "id": track.id,
-        "time": track.time,
-        "plots": track.plots,
-        "truth": used.truth_of(track),
-        "trackers": runs,
-    }
-
-
-def _comparison_as_json(found: RecordedComparison) -> dict[str, Any]:
-    columns = [
-        ("rms", "RMS innovation", "m"),
-        ("change", "Change", "%"),
-        ("log_likelihood", "Log-likelihood", "nats"),
-        ("outside", "Beyond 3\N{NO-BREAK SPACE}σ", "%"),
-        ("whiteness", "Correlation", ""),
-    ]
-    if found.has_truth:
-        columns[:0] = [
-            ("predicted", "RMSE predicted", "m"),
-            ("filtered", "RMSE filtered", "m"),
-        ]
-    rows = [
-        {"name": each.name, "mark": mark, **_row(each)}
-        for each, mark in zip(found.scores, found.marks, strict=True)
-    ]
-    return {
-        "columns": columns,
-        "rows": rows,
-        "scored": found.scored,
-        "before": found.before,
-        "measured_rmse": found.measured_rmse,
-        "expected_correlation": found.scores[best_of(found.errors) or 0].whiteness.reach,
-        "expected_outside": 100 * found.expected_outside,
-    }
-
-
-def _row(score: RecordedScore) -> dict[str, Any]:
-    own = score.true.change if score.true else score.change
-    return {
-        "rms": score.rms,
-        "change": own and 100 * own.change,
-        "change_low": own and 100 * own.low,
-        "change_high": own and 100 * own.high,
-        "log_likelihood": score.log_likelihood,
-        "outside": 100 * score.outside,
-        "whiteness": score.whiteness.correlation,
-        "predicted": score.true and score.true.predicted,
-        "filtered": score.true and score.true.filtered,
-    }

@@ -41,9 +41,9 @@ def run(page: Page, given: Arguments) -> Later:
         started = Run(scenario, make(), runs, seed)
         started.check()
         page.studio.make_room_for(started, page)
-        page.job = page.studio.jobs.start("run", runs, run_work(started), page.report)
-        page.run, page.run_job = started, page.job
-        return {"job": page.job.number}
+        job = page.start("run", runs, run_work(started))
+        page.run = started
+        return {"job": job.number}
 
     return Later(work)
 
@@ -69,8 +69,8 @@ def trackers_of(page: Page, texts: list[str]) -> Any:
 
 
 def cancel(page: Page, given: Arguments) -> Answer:
-    """Cancel a job at once."""
-    job = page.studio.jobs.cancel(given.whole("job", 1, _MOST_SEED))
+    """Cancel a job of the page at once."""
+    job = page.studio.jobs.cancel(given.whole("job", 1, _MOST_SEED), page)
     return {"job": job.as_json(False)}
 
 

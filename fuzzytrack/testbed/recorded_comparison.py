@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,10 +16,11 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array, Mask
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.reading import Reading
+from fuzzytrack.io.recording import Track
 from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.preparation import suited
 from fuzzytrack.recordings.used_plots import UsedPlots, read_used_plots
-from fuzzytrack.tasks import Progress, part
+from fuzzytrack.tasks import Progress, part, run_tasks
 from fuzzytrack.testbed.block_bootstrap import rms_change
 from fuzzytrack.testbed.innovations import Innovations, Positions, positions_of
 from fuzzytrack.testbed.metrics import squared_distance
@@ -104,6 +107,7 @@ def compare_used(
     used: UsedPlots,
     *,
     seed: int = 0,
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> RecordedComparison:
     """Compare trackers on plots that have been read; see `compare_recorded`.
@@ -114,6 +118,8 @@ def compare_used(
     used : UsedPlots
     seed, progress
         As for `compare_recorded`.
+    executor : concurrent.futures.Executor, optional
+        Runs the trackers, each as a task; in this process unless given.
 
     Raises
     ------
@@ -121,13 +127,17 @@ def compare_used(
         As `compare_recorded`.
     """
     rows = _Rows.of(used)
-    runs = {}
-    made = as_trackers(trackers)
-    for number, (name, text) in enumerate(trackers.items(), 1):
-        tracker = suited(text, made[name], axes_differ=used.axes_differ)[1]
-        runs[name] = rows.followed(positions_of(tracker, used.tracks))
+    made = {
+        name: suited(trackers[name], tracker, axes_differ=used.axes_differ)[1]
+        for name, tracker in as_trackers(trackers).items()
+    }
+    found: dict[str, Positions] = {}
+    for name, positions in run_tasks(partial(_positions, made, used.tracks), made, executor):
+        found[name] = rows.followed(positions)
         if progress is not None:
-            progress(number / len(made))
+            progress(len(found) / len(made))
+    # As they were given: an executor finishes them in any order.
+    runs = {name: found[name] for name in made}
     scored = rows.scored(list(runs.values()))
     if not scored.any():
         raise DataError(
@@ -153,6 +163,10 @@ def compare_used(
         seed=seed,
         notes=used.notes,
     )
+
+
+def _positions(trackers: Mapping[str, Tracker], tracks: Sequence[Track], name: str) -> Positions:
+    return positions_of(trackers[name], tracks)
 
 
 # -------------------------------------------------------------------- the plots of all tracks

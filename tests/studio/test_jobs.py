@@ -12,13 +12,15 @@ from fuzzytrack.studio.notes import warnings_to_notes
 
 
 class Reports:
-    """Takes the reports of jobs; `end` waits for the end of one."""
+    """An owner of jobs that keeps their reports; `end` waits for the end of one."""
+
+    gone = False
 
     def __init__(self):
         self.told = []
         self.ended = threading.Event()
 
-    def __call__(self, job, with_results):
+    def report(self, job, with_results):
         self.told.append(job.as_json(with_results))
         if not job.running:
             self.ended.set()
@@ -68,11 +70,27 @@ def test_a_job_that_is_canceled_stays_so(found):
     with pytest.raises(ValueError, match=r"a job \(run\) is running"):
         found.start("tune", 1, work, reports)
     with pytest.raises(ValueError, match="no job 99 is running"):
-        found.cancel(99)
-    assert found.cancel(job.number).state == "cancelled"
+        found.cancel(99, reports)
+    with pytest.raises(ValueError, match=r"job: 1 is a job of another page; cancel it there"):
+        found.cancel(job.number, Reports())
+    assert found.cancel(job.number, reports).state == "cancelled"
     go.set()
     assert reports.end()["state"] == "cancelled"
     assert found.start("run", 1, lambda job, pool: {}, Reports()).number == job.number + 1
+
+
+def test_a_job_goes_on_until_it_is_ended_by_its_page_or_for_that_of_another_one_when_it_is_gone(
+    found,
+):
+    one, other, go = Reports(), Reports(), threading.Event()
+    found.start("tune", 1, lambda job, pool: {"heard": go.wait(30)}, one)
+    with pytest.raises(ValueError, match=r"a job \(tune\) of another page is running; .* there"):
+        found.start("run", 1, lambda job, pool: {}, other)
+    one.gone = True
+    found.start("run", 1, lambda job, pool: {"x": 1}, other)
+    assert one.end()["state"] == "cancelled"
+    assert other.end()["results"] == {"x": 1}
+    go.set()
 
 
 @pytest.mark.parametrize(

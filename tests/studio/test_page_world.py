@@ -1,6 +1,7 @@
 """The experiment side of the page in a real browser: scenario, runs, results, own data."""
 
 import re
+import threading
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
 from fuzzytrack.studio.notes import warnings_to_notes
+from fuzzytrack.studio.recorded import Recorded
 from fuzzytrack.testbed.montecarlo import monte_carlo
 
 playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
@@ -168,7 +170,7 @@ def test_a_run_is_canceled_and_another_one_can_begin(studio):
     expect(studio.locator("#pane-run").get_by_role("button", name="Run")).to_be_visible()
 
 
-def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server):
+def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server, monkeypatch):
     path = server.folder / "radar.csv"
     assert CliRunner().invoke(app, ["sample", "radar", "-o", str(path)]).exit_code == 0
     studio.reload()
@@ -193,6 +195,19 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server):
     studio.get_by_role("textbox", name="Range σ").fill("25")
     studio.keyboard.press("Enter")
     expect(facts).to_contain_text("σ 25 m", timeout=60_000)
+    status = studio.locator("#pane-data .progress [role=status]")
+    expect(status).to_contain_text("Done in", timeout=60_000)
+    read = threading.Event()
+    with monkeypatch.context() as patch:
+        # The work waits where it reads the file.
+        patch.setattr(Recorded, "read", lambda self: read.wait(60) and None)
+        studio.get_by_role("button", name="Track and compare").click()
+        expect(status).to_have_text("Reading the recording…")
+        studio.locator("#pane-data").get_by_role("button", name="Cancel").click()
+        expect(status).to_have_text("Canceled after 0 %.")
+        read.set()
+    studio.get_by_role("button", name="Track and compare").click()
+    expect(status).to_contain_text("Done in", timeout=60_000)
     studio.reload()
     expect(facts).to_contain_text("σ 25 m", timeout=60_000)
 

@@ -1,6 +1,7 @@
 """Recordings that a page is given: tracked, compared, tuned on."""
 
 import json
+import threading
 
 import numpy as np
 import pytest
@@ -9,8 +10,14 @@ from typer.testing import CliRunner
 from fuzzytrack.cli.app import app
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.studio.notes import warnings_to_notes
+from fuzzytrack.studio.recorded import Recorded
 
 TRACKERS = ["fixed:alpha=0.5377:beta=0.2018", "stiffness-damping"]
+
+
+def tracked(page, **said):
+    """What a job that tracks a recording ends with."""
+    return page.job(page.ask("track", **said)["job"])[-1]
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +41,13 @@ def test_a_recording_is_tracked_and_compared_as_by_the_command(page, csv, tmp_pa
     found = page.ask("upload", name="mine.csv", text=csv, id="id")
     assert (found["plots"], found["tracks"], found["axes"]) == (220, 2, 2)
     truth = ["true_x", "true_y"]
-    found = page.ask("track", name="mine.csv", trackers=TRACKERS, id="id", sigma=10, truth=truth)
+    events = page.job(
+        page.ask("track", name="mine.csv", trackers=TRACKERS, id="id", sigma=10, truth=truth)["job"]
+    )
+    found = events[-1]["results"]
+    # It begins, the file is read, and each tracker is a part.
+    assert [each["done"] for each in events] == sorted(each["done"] for each in events)
+    assert (events[0]["done"], events[-1]["done"], events[-1]["of"]) == (0, 100, 100)
     path = tmp_path / "mine.csv"
     path.write_text(csv)
     command = ["compare", str(path), "--trackers", ",".join(TRACKERS), "--sigma", "10"]
@@ -49,7 +62,7 @@ def test_a_recording_is_tracked_and_compared_as_by_the_command(page, csv, tmp_pa
     assert len(drawn["filtered"]) == 110
     assert drawn["innovation"][0] == [None, None]
     # The editor holds the same rule base; without a number the noise is estimated.
-    other = page.ask("track", name="mine.csv", trackers=["editor"], id="id")
+    other = tracked(page, name="mine.csv", trackers=["editor"], id="id")["results"]
     assert other["comparison"]["columns"][0][0] == "rms"
 
 
@@ -62,8 +75,8 @@ def test_a_rule_base_is_tuned_and_opens_in_the_editor(page, csv):
     found = last["results"]
     assert found["text"] is not None
     hello = page.ask("hello", session=page.hello["session"])
-    assert (hello["job"]["kind"], hello["run"]["kind"]) == ("tune", "run")
-    assert hello["run"]["results"]["runs"] == 2
+    assert [each["kind"] for each in hello["jobs"]] == ["run", "tune"]
+    assert hello["jobs"][0]["results"]["runs"] == 2
     assert found["before"] > 0
     assert loads_rulebase(found["text"]).output_names == ("stiffness", "damping")
     state = page.ask("set_text", text=found["text"])["state"]
@@ -109,7 +122,7 @@ def test_polar_plots_are_tracked_as_by_the_command(page, server, tmp_path):
     estimated = [(each["sigma"], each["error"]) for each in found["noise"]]
     for (sigma, error), true in zip(estimated, (30, 0.1), strict=True):
         assert abs(sigma - true) < 4 * error < true
-    found = page.ask("track", name="radar.csv", trackers=TRACKERS, **said)
+    found = tracked(page, name="radar.csv", trackers=TRACKERS, **said)["results"]
     command = ["compare", str(path), "--trackers", ",".join(TRACKERS), "--id", "track", "--json"]
     command += ["--polar", "range,azimuth", "--sigma-range", "30", "--sigma-azimuth", "0.1"]
     expected = json.loads(CliRunner().invoke(app, command).output)["trackers"]
@@ -121,9 +134,9 @@ def test_warnings_about_tracks_are_notes_with_the_names_of_trackers(page, server
     path = server.folder / "radar.csv"
     CliRunner().invoke(app, ["sample", "radar", "-o", str(path)])
     with warnings_to_notes():
-        found = page.ask(
-            "track", name="radar.csv", trackers=["editor", *TRACKERS], polar=["range", "azimuth"]
-        )
+        trackers = ["editor", *TRACKERS]
+        last = tracked(page, name="radar.csv", trackers=trackers, polar=["range", "azimuth"])
+    found = last["results"]
     (said,) = [note for note in found["notes"] if "its gains do not suit times" in note]
     assert said.startswith("editor, fixed:alpha=0.5377:beta=0.2018, stiffness-damping: its gains")
 
@@ -135,19 +148,19 @@ def test_the_truth_is_in_columns_or_a_file_of_the_folder(page, server, csv, tmp_
     (outside / "true.csv").write_text(csv)
     page.ask("upload", name="mine.csv", text=csv)
     said = {"name": "mine.csv", "trackers": TRACKERS[:1], "id": "id"}
-    found = page.ask("track", truth=["true.csv"], **said)
+    found = tracked(page, truth=["true.csv"], **said)["results"]
     assert found["comparison"]["columns"][0][0] == "predicted"
     for truth in (f"{outside}/true.csv", "../outside/true.csv"):
         assert "must be the name of a file" in page.refused("track", truth=[truth], **said)
     for truth in (["/etc/passwd"], ["true_x", "."]):
-        assert f"`truth`: no column {truth[-1]!r}" in page.refused("track", truth=truth, **said)
+        assert f"`truth`: no column {truth[-1]!r}" in tracked(page, truth=truth, **said)["error"]
 
 
 def test_a_refusal_does_not_name_the_folder(page, csv):
     page.ask("upload", name="mine.csv", text=csv, id="id")
-    said = page.refused(
-        "track", name="mine.csv", trackers=TRACKERS[:1], id="id", axes=["x"], truth=["x", "y"]
-    )
+    said = tracked(
+        page, name="mine.csv", trackers=TRACKERS[:1], id="id", axes=["x"], truth=["x", "y"]
+    )["error"]
     assert "/" not in said
     assert "mine.csv" in said or "truth" in said
 
@@ -164,4 +177,23 @@ def test_sixteen_recordings_are_kept(server, page):
     for number in range(17):
         page.ask("upload", name=f"r{number}.csv", text=text)
     assert "is not in the folder" in page.refused("track", name="r0.csv", trackers=["editor"])
-    assert page.ask("track", name="r1.csv", trackers=["fixed:alpha=0.5:beta=0.2"])["plots"] == 9
+    found = tracked(page, name="r1.csv", trackers=["fixed:alpha=0.5:beta=0.2"])["results"]
+    assert found["plots"] == 9
+
+
+def test_tracking_is_canceled_by_its_page_or_when_something_else_is_said_of_the_recording(
+    page, server, csv, monkeypatch
+):
+    read = threading.Event()
+    page.ask("upload", name="mine.csv", text=csv, id="id")
+    with monkeypatch.context() as patch:
+        # The work waits where it reads the file.
+        patch.setattr(Recorded, "read", lambda self: read.wait(60) and None)
+        number = page.ask("track", name="mine.csv", trackers=TRACKERS, id="id")["job"]
+        page.ask("cancel", job=number)
+        assert page.job(number)[-1]["state"] == "cancelled"
+        number = page.ask("track", name="mine.csv", trackers=TRACKERS, id="id")["job"]
+    found = page.ask("recording", name="mine.csv", id="id", sigma=10)
+    assert found["tracks"] == 2
+    assert page.job(number)[-1]["state"] == "cancelled"
+    read.set()

@@ -5,6 +5,7 @@ import { argumentsOf, inFields } from "./columns.js";
 import { html, select } from "./elements.js";
 import { action, group } from "./fields.js";
 import { figure } from "./figure.js";
+import { jobBar } from "./jobbar.js";
 import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import { even, shown, withPlaces } from "./numbers.js";
@@ -36,6 +37,7 @@ export function mount(element, app) {
   const recording = recordingForm(app, run);
   const picks = trackerList(app);
   const compare = action("Track and compare", run, { class: "primary" });
+  const { element: progress, cancel } = jobBar(app, "track", "Progress of the recording", compare);
   const facts = html("p", { class: "muted what" });
   const notes = html("ul", { class: "notes", tabindex: 0, "aria-label": "Notes" });
   const table = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" });
@@ -63,11 +65,8 @@ export function mount(element, app) {
     "div",
     { class: "work", hidden: true },
     html("p", { class: "muted", role: "status" }),
-    html("progress", { "aria-label": "Progress of the recording" }),
+    html("progress", { "aria-label": "The recording is read" }),
   );
-  // Numbers of questions, of which the last one counts.
-  let asked = 0;
-
   element.append(
     html(
       "header",
@@ -76,11 +75,12 @@ export function mount(element, app) {
       html("span", { class: "space" }),
       menu("Keep the comparison", "Keep", keepers),
       compare,
+      cancel,
     ),
     html(
       "div",
       { class: "beside" },
-      html("div", { class: "tall" }, work, empty, body),
+      html("div", { class: "tall" }, work, progress, empty, body),
       html("div", { class: "side" }, recording.element, group("Trackers", picks.element)),
     ),
   );
@@ -102,20 +102,20 @@ export function mount(element, app) {
     const trackers = chosenTrackers(store.now);
     if (!name) return say("There is no recording: drop a CSV file, or choose one in the folder.", "error");
     if (!trackers.length) return say("No tracker is chosen: check one in the list, or add one.", "error");
-    const number = (asked += 1);
-    store.set({ working: "tracked" });
     try {
-      const tracked = await socket.send("track", { name, trackers, ...argumentsOf(store.now) });
-      if (number !== asked) return;
-      const kept = tracked.name === store.now.tracked?.name;
-      store.set({ tracked, ...(kept ? {} : { trackShown: 0, axisShown: 0 }) });
+      await socket.send("track", { name, trackers, ...argumentsOf(store.now) });
       say("");
     } catch (error) {
-      if (number === asked) say(inFields(error.message), "error");
-    } finally {
-      if (number === asked) store.set({ working: null });
+      say(inFields(error.message), "error");
     }
   }
+
+  store.follow(["job"], ({ job, recording: name, tracked: before }) => {
+    // That of another recording was asked for before this one was chosen.
+    if (job?.kind !== "track" || job.results?.name !== name) return;
+    const kept = name === before?.name;
+    store.set({ tracked: job.results, ...(kept ? {} : { trackShown: 0, axisShown: 0 }) });
+  });
 
   store.follow(["tracked", "trackShown", "axisShown", "hidden", "scheme", "view"], (now) => {
     const { tracked, trackShown, axisShown, hidden } = now;
@@ -136,9 +136,9 @@ export function mount(element, app) {
     picture.redraw();
   });
   store.follow(["tracked", "trackShown"], () => picture.fit());
-  store.follow(["working", "recording", "described"], (now) => {
+  store.follow(["working", "recording", "described", "job"], (now) => {
     work.hidden = !now.working;
-    work.firstChild.textContent = `${now.recording} is being ${now.working}.`;
+    work.firstChild.textContent = `${now.recording} is being read.`;
     hint.textContent = hintOf(now);
   });
 
@@ -150,8 +150,8 @@ export function mount(element, app) {
   }
 }
 
-function hintOf({ working, recording, described }) {
-  if (working) return "";
+function hintOf({ working, recording, described, job }) {
+  if (working || (job?.kind === "track" && job.state === "running")) return "";
   if (described?.problem) return `${recording} cannot be read yet: the message below its name says why.`;
   if (recording) return `Track and compare: all trackers that are checked follow the tracks of ${recording}.`;
   return "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared.";

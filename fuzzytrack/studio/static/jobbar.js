@@ -1,5 +1,6 @@
 /* Progress of the jobs of a pane: how far one is, what is left, how it ended, and its cancel. */
 
+import { inFields } from "./columns.js";
 import { html } from "./elements.js";
 
 /**
@@ -19,16 +20,18 @@ export function jobBar({ store, socket, say }, kind, label, start) {
     }
   }
 
+  cancel.hidden = bar.hidden = true;
   store.follow(["job"], ({ job }) => {
-    const own = job?.kind === kind;
-    const running = own && job.state === "running";
+    // What became of the last one stays, whatever other jobs there are.
+    if (job?.kind !== kind) return;
+    const running = job.state === "running";
     start.hidden = running;
     cancel.hidden = !running;
     bar.hidden = !running;
     if (running && job.done) bar.value = job.done / job.of;
     else bar.removeAttribute("value");
-    words.textContent = own ? told(job) : "";
-    words.classList.toggle("failed", own && job.state === "failed");
+    words.textContent = told(job);
+    words.classList.toggle("failed", job.state === "failed");
   });
   return { element: html("div", { class: "progress" }, bar, words), cancel, words };
 }
@@ -36,6 +39,7 @@ export function jobBar({ store, socket, say }, kind, label, start) {
 // Until there is progress; a tuning compiles its trackers before.
 const STARTING = {
   run: "Starting…",
+  track: "Reading the recording…",
   tune: "Starting: the trackers are compiled first, which may take a minute.",
 };
 
@@ -45,7 +49,7 @@ function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
   if (state === "running" && !done) return STARTING[kind];
   if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
   if (state === "cancelled") return `Canceled after ${count}.`;
-  if (state === "failed") return `Failed: ${error}`;
+  if (state === "failed") return `Failed: ${inFields(error)}`;
   return `${kind === "run" ? `${of} runs` : "Done"} in ${duration(seconds)}.`;
 }
 

@@ -20,7 +20,7 @@ const INITIAL = {
   view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
   resultsTab: "all", hidden: [], sorting: { key: null, down: false }, quantity: "predicted", band: "se",
-  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, described: null, working: null, trackShown: 0,
+  gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, described: null, working: false, trackShown: 0,
   axisShown: 0,
   // How.
   points: 41, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
@@ -99,6 +99,7 @@ async function greet() {
     const hello = await socket.send("hello", { session: before });
     const { session, state, files: found, shipped } = hello;
     store.set({ hello, session, state, files: found, shipped, connected: true });
+    for (const job of hello.jobs) store.set({ job });
     document.body.classList.add("ready");
     seeVisits();
     if (before && session !== before) await reopen(opened);

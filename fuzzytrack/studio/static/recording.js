@@ -142,21 +142,22 @@ export function recordingForm(app, taken) {
   /** Ask what is in the recording, and let it be tracked if it can be read. */
   async function look() {
     const name = store.now.recording;
-    await ask("recording", { name, ...argumentsOf(store.now) });
+    if (await ask("recording", { name, ...argumentsOf(store.now) })) taken();
   }
 
+  /** Ask what is in a recording; whether it can be read, and nothing else was asked meanwhile. */
   async function ask(command, args) {
     const number = (asked += 1);
-    store.set({ working: "read" });
+    store.set({ working: true });
     let described = null;
     try {
       described = await socket.send(command, args);
     } catch (error) {
       described = { name: args.name, columns: [], problem: error.message };
     }
-    if (number !== asked) return;
-    store.set({ described, working: null, ...(described.problem ? { tracked: null } : {}) });
-    if (!described.problem) taken();
+    if (number !== asked) return false;
+    store.set({ described, working: false, ...(described.problem ? { tracked: null } : {}) });
+    return !described.problem;
   }
 
   async function take(file) {
@@ -185,7 +186,7 @@ export function recordingForm(app, taken) {
       uploads: [...new Set([...uploads, file.name])],
       readings: { ...readings, [file.name]: NOTHING },
     });
-    await ask("upload", { name: file.name, text });
+    if (await ask("upload", { name: file.name, text })) taken();
   }
 
   function dragged(event) {
@@ -247,12 +248,14 @@ export function recordingForm(app, taken) {
     sort.firstChild.checked = reading.sort;
   });
   store.follow(["described", "working"], ({ described, working }) => {
-    problem.hidden = !described?.problem || working === "read";
+    problem.hidden = !described?.problem || working;
     problem.replaceChildren(...(described?.problem ? withRemedies(described.problem, put) : []));
   });
-  // After a reload the recording is read again when it is looked at.
-  store.follow(["view", "hello"], ({ view, hello, recording, described }) => {
-    if (view === "data" && hello && recording && !described) look();
+  // After a reload the recording is read again when it is looked at; its tracks are there still,
+  // unless the server was started again.
+  store.follow(["view", "hello"], async ({ view, hello, recording: name, described }) => {
+    if (view !== "data" || !hello || !name || described) return;
+    if ((await ask("recording", { name, ...argumentsOf(store.now) })) && !store.now.tracked) taken();
   });
 
   return { element, dragged, put };

@@ -74,9 +74,6 @@ export function mount(element, app) {
   store.follow(["job"], ({ job }) => {
     if (job?.kind === "run" && job.results) store.set({ results: job.results });
   });
-  store.follow(["hello"], ({ hello }) => {
-    if (hello?.job) store.set({ job: hello.job });
-  });
   store.follow(["resultsTab", "results"], ({ resultsTab, results }) => {
     tabs.show(TABS, resultsTab);
     empty.hidden = Boolean(results) || resultsTab === "walk";

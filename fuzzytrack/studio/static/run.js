@@ -42,7 +42,7 @@ export function mount(element, app) {
 
   async function run() {
     const { wantedRuns, seed: wanted, job, state, scenario } = store.now;
-    if (job?.state === "running") return;
+    if (job?.kind === "run" && job.state === "running") return;
     const texts = chosenTrackers(store.now);
     if (!texts.length) {
       say("No tracker is chosen: check one in the list, or add one.", "error");

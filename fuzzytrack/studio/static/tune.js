@@ -1,6 +1,6 @@
 /* The pane that tunes the numbers of a tracker, on the recording or on the scenario. */
 
-import { argumentsOf } from "./columns.js";
+import { argumentsOf, inFields } from "./columns.js";
 import { choice, html } from "./elements.js";
 import { action, group, numberField, textField } from "./fields.js";
 import { jobBar } from "./jobbar.js";
@@ -89,7 +89,7 @@ export function mount(element, app) {
     try {
       await socket.send("tune", asked());
     } catch (error) {
-      say(error.message, "error");
+      say(inFields(error.message), "error");
     }
   }
 
