@@ -48,11 +48,6 @@ class SharedCode:
         """Whether no function was seen yet."""
         return not self._kinds
 
-    @property
-    def compilations(self) -> int:
-        """How many functions were compiled that differ in more than numbers."""
-        return sum(bool(kind.codes) for kind in self._kinds.values())
-
     def learn(self, function: Callable[..., Any]) -> None:
         """Note the numbers of a function, so that the code serves all that were noted before it."""
         self._kind(function)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from fuzzytrack.kernels.rebuild import fingerprint
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.lanes.layout import BLOCK
 from fuzzytrack.trackers.lane_tracker import LaneTracker
 from fuzzytrack.trackers.runners import runner
 
-__all__ = ["announce", "learn_code", "sharing_code"]
+__all__ = ["announce", "code_form", "learn_code", "sharing_code"]
 
 
 def announce(tracker: object, n_axes: int, coordinates: int) -> None:
@@ -28,6 +29,20 @@ def announce(tracker: object, n_axes: int, coordinates: int) -> None:
     if isinstance(tracker, LaneTracker):
         core = runner(tracker, n_axes if tracker.coupled else 1)
         core.horizon = max(core.horizon, core.work + coordinates)
+
+
+def code_form(tracker: object, n_axes: int) -> str | None:
+    """What trackers have in common that `sharing_code` serves alike.
+
+    Returns
+    -------
+    str or None
+        None if the tracker shares code with no other one.
+    """
+    if not isinstance(tracker, LaneTracker):
+        return None
+    program = runner(tracker, n_axes if tracker.coupled else 1).program
+    return fingerprint(program.step(BLOCK), numbers=False)
 
 
 def learn_code(tracker: object, n_axes: int, code: SharedCode) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
@@ -13,8 +15,9 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError, RuleBaseError
 from fuzzytrack.kernels.shared_code import SharedCode
 from fuzzytrack.reprs import summary
+from fuzzytrack.tasks import Progress
 from fuzzytrack.trackers.base import Tracker
-from fuzzytrack.trackers.compilation import learn_code, sharing_code
+from fuzzytrack.trackers.compilation import code_form, learn_code, sharing_code
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import Criterion
 from fuzzytrack.tuning.data import TuningData
@@ -26,9 +29,10 @@ __all__ = ["REFUSED", "Trials"]
 #: Loss of numbers that make no tracker, or one that does not predict all plots.
 REFUSED = 1e3
 
-# A rule table is compiled to sums whose form depends on the order of its levels. If trackers of a
-# family differ so in form, each is compiled by itself, which takes as long as running so many
-# coordinates in plain Python, and memory; after so many of them the others run there.
+# A rule table is compiled to sums whose form depends on the order of its levels, so a search may
+# meet trackers of a hundred forms. To compile one takes as long as to run so many coordinates in
+# plain Python, and memory: it is compiled when more than that has been run of it, and there are no
+# more than so many of them.
 _COORDINATES, _FORMS = 200_000, 24
 
 
@@ -42,7 +46,7 @@ class Trials:
     folds : Folds
     criterion : Criterion
     compiled : bool
-        Whether to run compiled, all trackers of a kind through the same code.
+        Whether to compile what runs often, all trackers of a form as the same code.
     """
 
     data: TuningData
@@ -53,13 +57,20 @@ class Trials:
     def __repr__(self) -> str:
         return summary(self, "data", "compiled")
 
-    def sums(self, candidates: Candidates, trials: Sequence[Numbers]) -> list[Array]:
+    def sums(
+        self,
+        candidates: Candidates,
+        trials: Sequence[Numbers],
+        progress: Progress | None = None,
+    ) -> list[Array]:
         """Sums of the criterion over the plots of each unit, of the trackers with some numbers.
 
         Parameters
         ----------
         candidates : Candidates
         trials : sequence of Numbers
+        progress : callable, optional
+            Called with the share of the trials that are done.
 
         Returns
         -------
@@ -68,18 +79,16 @@ class Trials:
             predict all scored plots.
         """
         made = [_tracker(candidates, numbers) for numbers in trials]
-        if not self.compiled:
-            return [self._sums(tracker) for tracker in made]
-        code, n_axes, found = _shared_code(candidates.title), self.data.n_axes, []
-        if code.compilations > _FORMS and self.data.coordinates < _COORDINATES:
-            return [self._sums(tracker) for tracker in made]
-        if code.is_empty:
-            # One code for all that differs between these; a later surprise is compiled anew.
-            for tracker in made:
-                learn_code(tracker, n_axes, code)
+        forms, n_axes, found = _forms(candidates.title), self.data.n_axes, []
         for tracker in made:
-            with sharing_code(tracker, n_axes, code):
+            with contextlib.ExitStack() as stack:
+                if self.compiled and forms.run_compiled(
+                    tracker, n_axes, self.data.coordinates, made
+                ):
+                    stack.enter_context(sharing_code(tracker, n_axes, forms.code))
                 found.append(self._sums(tracker))
+            if progress is not None:
+                progress(len(found) / len(made))
         return found
 
     def losses(self, candidates: Candidates, trials: Sequence[Numbers], held: int) -> list[float]:
@@ -109,7 +118,59 @@ def _tracker(candidates: Candidates, numbers: Numbers) -> Tracker | None:
         return None
 
 
+@dataclass(eq=False)
+class _Forms:
+    """The forms of the trackers of a family, and the code of those that run often.
+
+    Attributes
+    ----------
+    code : SharedCode
+    """
+
+    code: SharedCode = field(default_factory=SharedCode)
+    _coordinates: Counter[str | None] = field(default_factory=Counter)
+    _last: dict[str | None, Tracker] = field(default_factory=dict)
+    _compiled: set[str | None] = field(default_factory=set)
+
+    def run_compiled(
+        self,
+        tracker: Tracker | None,
+        n_axes: int,
+        coordinates: int,
+        others: Sequence[Tracker | None],
+    ) -> bool:
+        """Whether a tracker is to run so many coordinates through `code`.
+
+        Parameters
+        ----------
+        tracker : Tracker or None
+        n_axes, coordinates : int
+            Of the data.
+        others : sequence of Tracker or None
+            Trackers that run next.
+        """
+        if tracker is None:
+            return False
+        form = code_form(tracker, n_axes)
+        if form is None:
+            # Its code would be of use to no other one.
+            return coordinates > _COORDINATES
+        self._coordinates[form] += coordinates
+        before = self._last.get(form)
+        self._last[form] = tracker
+        if form in self._compiled:
+            return True
+        rare = self._coordinates[form] <= _COORDINATES
+        if rare or (len(self._compiled) >= _FORMS and coordinates <= _COORDINATES):
+            return False
+        self._compiled.add(form)
+        # One code for all that differs between these; a later surprise is compiled anew.
+        for each in (before, *others):
+            learn_code(each, n_axes, self.code)
+        return True
+
+
 @cache
-def _shared_code(title: str) -> SharedCode:
-    """Compiled code of this process, for all trackers of a family that are tried."""
-    return SharedCode()
+def _forms(title: str) -> _Forms:
+    """Those of this process, for all trackers of a family that are tried."""
+    return _Forms()

@@ -8,6 +8,7 @@ import os
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.preparation import suited
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
-from fuzzytrack.tasks import Progress
+from fuzzytrack.tasks import Progress, part
 from fuzzytrack.trackers.catalog import as_tracker
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import CRITERIA, Criterion, Likelihood
@@ -160,14 +161,21 @@ def tune(
         for number in range(len(families))
     )
     journal = Journal.open(state, _job(run, families, plans, trials, seed), resume)
-    (candidates, unused), *rivals = (_with_effect(family, run) for family in families)
+    # Trials that find out which numbers have an effect, one family after the other.
+    ends = [0, *accumulate(1 + 2 * len(family.space.parameters) for family in families)]
+    watch = progress or (lambda share: None)
+    shares = [end / (ends[-1] + planned) for end in ends]
+    (candidates, unused), *rivals = (
+        _with_effect(family, run, part(watch, *between))
+        for family, between in zip(families, pairwise(shares), strict=True)
+    )
     families = [candidates, *(rival for rival, _ in rivals)]
     searches = [
         Search(families[p.family].space, search_seed(seed, k), _planned(families[p.family], trials))
         for k, p in enumerate(plans)
     ]
     work = _Work(run, tuple(families), plans)
-    run_searches(searches, work.losses, executor, journal, progress)
+    run_searches(searches, work.losses, executor, journal, part(watch, shares[-1], 1.0))
     best = {plan: search.best for plan, search in zip(plans, searches, strict=True)}
     rows = _rows(families, best, run)
     numbers = best[_Plan(0, _ALL)]
@@ -281,7 +289,9 @@ def _check_start(candidates: Candidates, run: Trials) -> None:
         )
 
 
-def _with_effect(candidates: Candidates, run: Trials) -> tuple[Candidates, tuple[str, ...]]:
+def _with_effect(
+    candidates: Candidates, run: Trials, progress: Progress
+) -> tuple[Candidates, tuple[str, ...]]:
     """The same with those numbers free that have an effect, and the names of the others."""
     space = candidates.space
     places = [[0.0] * len(space.parameters)]
@@ -290,7 +300,7 @@ def _with_effect(candidates: Candidates, run: Trials) -> tuple[Candidates, tuple
             places.append([step * (j == k) for j in range(len(space.parameters))])
     bounds = space.bounds
     trials = [space.numbers(np.clip(place, bounds[:, 0], bounds[:, 1])) for place in places]
-    start, *moved = run.sums(candidates, trials)
+    start, *moved = run.sums(candidates, trials, progress)
     used = [
         k
         for k in range(len(space.parameters))
