@@ -27,7 +27,14 @@ OPERATORS = {
 }
 
 
-def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>") -> EditedText:
+def set_cell(
+    text: str,
+    where: Mapping[str, str],
+    cell: str,
+    file: str = "<text>",
+    *,
+    together: bool = False,
+) -> EditedText:
     """Change one cell of a table, or the consequents of one rule, and nothing else in the text.
 
     Parameters
@@ -42,6 +49,8 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
         in the order in which the rule names them); or ``{stiffness: M, damping: Z}``.
     file : str
         Name for messages.
+    together : bool
+        Whether a rule of ``if any`` is changed with the others that are written with it.
 
     Returns
     -------
@@ -52,15 +61,15 @@ def set_cell(text: str, where: Mapping[str, str], cell: str, file: str = "<text>
     ------
     RuleBaseError
         If the text, before or after, is no rule base, there is no such rule, or the rule shares
-        its consequents with others (``if any``, anchors).
+        its consequents with others (an anchor; ``if any``, unless `together`).
     """
-    return _with_cell(TextEdits(text, file), where, cell)
+    return _with_cell(TextEdits(text, file), where, cell, together)
 
 
-def _with_cell(edits: TextEdits, where: Mapping[str, str], cell: str) -> EditedText:
+def _with_cell(edits: TextEdits, where: Mapping[str, str], cell: str, together: bool) -> EditedText:
     before = edits.before
     key = _known_conditions(before, where)
-    node = _own_consequents(edits, key, where)
+    node = _own_consequents(edits, key, where, together)
     order = before.layout.cells if before.layout else before.output_names
     if before.layout is None and isinstance(node, MappingNode):
         order = tuple(node.entries)
@@ -68,14 +77,20 @@ def _with_cell(edits: TextEdits, where: Mapping[str, str], cell: str) -> EditedT
     if isinstance(node, MappingNode) and not cell.strip().startswith("{"):
         cell = consequents_text(wanted)
     edits.replace(node.start, node.end, cell.strip())
+    changed = {k for k, (each, _) in edits.reader.rule_nodes.items() if each is node}
     expected = tuple(
-        replace(rule, consequents=wanted) if rule.key == key else rule for rule in before.rules
+        replace(rule, consequents=wanted) if rule.key in changed else rule for rule in before.rules
     )
     return edits.result(replace(before, rules=expected), node, quoted(cell))
 
 
 def set_consequents(
-    text: str, where: Mapping[str, str], consequents: Iterable[Consequent], file: str = "<text>"
+    text: str,
+    where: Mapping[str, str],
+    consequents: Iterable[Consequent],
+    file: str = "<text>",
+    *,
+    together: bool = False,
 ) -> EditedText:
     """Change the consequents of one rule, with their confidences.
 
@@ -90,6 +105,8 @@ def set_consequents(
         written in the shortest form of a cell.
     file : str
         Name for messages.
+    together : bool
+        As for `set_cell`.
 
     Returns
     -------
@@ -108,7 +125,7 @@ def set_consequents(
     cell = consequents_text(rule.consequents)
     if before.layout is not None:
         cell = cell_text(rule, before.layout.cells, before)
-    return _with_cell(edits, where, cell)
+    return _with_cell(edits, where, cell, together)
 
 
 def add_rule(
@@ -240,16 +257,19 @@ def _rule_list(edits: TextEdits, done: str) -> Sequence:
 
 
 def _own_consequents(
-    edits: TextEdits, key: frozenset[tuple[str, str]], where: Mapping[str, str]
+    edits: TextEdits,
+    key: frozenset[tuple[str, str]],
+    where: Mapping[str, str],
+    together: bool = False,
 ) -> Node:
-    """Node of the consequents of a rule that shares them with no other."""
+    """Node of the consequents of a rule that shares them with no other, but those of `together`."""
     if key not in edits.reader.rule_nodes:
         raise RuleBaseError(
             f"no rule has exactly the conditions {_spelled(where)}; name a set for each input "
             "that the rule has"
         )
     node, shared = edits.reader.rule_nodes[key]
-    if shared or node.anchored or _inside_anchor(edits.document, node):
+    if (shared and not together) or node.anchored or _inside_anchor(edits.document, node):
         raise edits.document.error(
             node,
             f"other rules share the conclusions of the rule for {_spelled(where)}; "

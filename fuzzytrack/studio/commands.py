@@ -45,10 +45,13 @@ _LARGEST = 1e300
 
 
 def cell(text: str, where: dict[str, str], says: str, symmetric: bool = False) -> EditedText:
-    """Set the conclusions of a rule, as the text of a cell; `symmetric` also of its mirror."""
+    """Set the conclusions of a rule, as the text of a cell; `symmetric` also of its mirror.
+
+    Rules that are written as one, with ``if any``, change together.
+    """
     if len(says) > MAX_SAYS:
         raise ValueError(f"says: {len(says)} characters; at most {MAX_SAYS} are allowed")
-    changed = set_cell(text, where, says)
+    changed = set_cell(text, where, says, together=True)
     return _mirrored(changed, where) if symmetric else changed
 
 
@@ -56,7 +59,7 @@ def conclude(
     text: str, where: dict[str, str], then: list[dict[str, Any]], symmetric: bool = False
 ) -> EditedText:
     """Set the conclusions of a rule: output, set and, unless it is 1, confidence of each."""
-    changed = set_consequents(text, where, _consequents(then))
+    changed = set_consequents(text, where, _consequents(then), together=True)
     return _mirrored(changed, where) if symmetric else changed
 
 
@@ -80,7 +83,7 @@ def confidence(
     ]
     # Without such a rule, `set_consequents` says so.
     then = then or [Consequent(rules.output_names[0], rules.outputs[0].set_names[0])]
-    changed = set_consequents(text, where, then)
+    changed = set_consequents(text, where, then, together=True)
     return _mirrored(changed, where) if symmetric else changed
 
 

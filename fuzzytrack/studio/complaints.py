@@ -6,11 +6,10 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from fuzzytrack.errors import FileError, RuleBaseError, in_one_sentence
+from fuzzytrack.errors import FileError, in_one_sentence
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
-from fuzzytrack.studio.symmetry import DRAWN
 from fuzzytrack.yamltree import Document, Mapping, Node, Sequence
 
 __all__ = ["Complaint", "complaint_of", "complaints_of_rules"]
@@ -105,7 +104,6 @@ def complaints_of_rules(
     """
     try:
         rules = rules or loads_rulebase(text, file)
-        _check_shown(rules)
     except FileError as error:
         return None, tuple(_all_complaints(text, file, error))
     if rules.scheduler:
@@ -114,23 +112,6 @@ def complaints_of_rules(
         except Exception as error:  # a plug-in may raise anything
             return rules, (complaint_of(error, text, stops=False),)
     return rules, ()
-
-
-def _check_shown(rules: RuleBase) -> None:
-    """Raise RuleBaseError for what a page would show without half of its meaning."""
-    if any(rule.alternatives for rule in rules.rules):
-        raise RuleBaseError("rules with 'or' are not shown here; edit this file as a text")
-    if any(output.operators for output in rules.outputs):
-        raise RuleBaseError(
-            "outputs with operators of their own are not shown here; edit this file as a text"
-        )
-    for variable in (*rules.inputs, *rules.outputs):
-        for fuzzy_set in variable.sets:
-            if fuzzy_set.shape not in DRAWN:
-                raise RuleBaseError(
-                    f"the shape {fuzzy_set.shape} of {fuzzy_set.name!r} is not drawn here; edit "
-                    "this file as a text"
-                )
 
 
 def _all_complaints(text: str, file: str, error: FileError) -> Iterator[Complaint]:

@@ -14,7 +14,8 @@ from fuzzytrack.studio.complaints import Complaint
 from fuzzytrack.studio.folder import Folder, FolderError
 from fuzzytrack.studio.handlers import Handler
 from fuzzytrack.studio.pages import Page
-from fuzzytrack.studio.state import cell_place, rulebase_state, shared_sets
+from fuzzytrack.studio.places import places_of
+from fuzzytrack.studio.state import cell_place, rulebase_state
 from fuzzytrack.studio.symmetry import DRAWN
 from fuzzytrack.studio.world_handlers import scenario_state
 from fuzzytrack.yamltree import quoted
@@ -42,7 +43,7 @@ def state_of(page: Page) -> dict[str, Any]:
         "redo": redo,
         "text": opened.text,
         "complaints": [_complaint(rules, c) for c in session.reading.complaints["rules"]],
-        "rulebase": rulebase_state(rules, shared_sets(opened.text)),
+        "rulebase": rulebase_state(rules, places_of(opened.text)),
     }
 
 

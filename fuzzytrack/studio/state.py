@@ -2,34 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from fuzzytrack.errors import FileError
+import numpy as np
+
+from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.rule_edits import OPERATORS
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase, TableLayout
 from fuzzytrack.fuzzy.saving import cell_text, consequents_text
-from fuzzytrack.fuzzy.shapes import SHAPES
+from fuzzytrack.fuzzy.shapes import LINEAR, SHAPES
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.schedulers.gain_outputs import find_gain_outputs
+from fuzzytrack.studio.places import Places
 from fuzzytrack.studio.symmetry import DRAWN
-from fuzzytrack.yamltree import Document
-from fuzzytrack.yamltree import Mapping as MappingNode
 
-__all__ = ["cell_place", "rulebase_state", "shared_sets"]
+__all__ = ["cell_place", "rulebase_state"]
 
+# Points of the curve of a set that a page cannot draw from its parameters.
+_CURVE = 201
+# Parameters of a set that are edited as numbers; more are edited in the text.
+_MOST_NUMBERS = 6
 _MOST_CELLS = 10_000
 _CELLS: dict[object, str] = {}
 
 
-def rulebase_state(rules: RuleBase, shared: Mapping[str, Sequence[str]]) -> dict[str, Any]:
+def rulebase_state(rules: RuleBase, places: Places) -> dict[str, Any]:
     """A rule base in the types of JSON.
 
     Parameters
     ----------
     rules : RuleBase
-    shared : mapping of str to sequence of str
-        Other variables that share the sets of a variable, by its name, see `shared_sets`.
+    places : Places
+        Of its text.
     """
     settings = dict(rules.scheduler)
     gains = find_gain_outputs(rules.output_names)
@@ -37,13 +42,13 @@ def rulebase_state(rules: RuleBase, shared: Mapping[str, Sequence[str]]) -> dict
         "name": rules.name,
         "description": rules.description,
         "source": rules.source,
-        "inputs": [_variable(v, shared) for v in rules.inputs],
-        "outputs": [_variable(v, shared) for v in rules.outputs],
+        "inputs": [_variable(v, rules, places) for v in rules.inputs],
+        "outputs": [_variable(v, rules, places) for v in rules.outputs],
         "operators": {
             word: {"value": getattr(rules.operators, attribute), "choices": allowed}
             for word, (attribute, allowed) in OPERATORS.items()
         },
-        "rules": _list(rules) if rules.layout is None else _table(rules, rules.layout),
+        "rules": _list(rules, places) if rules.layout is None else _table(rules, rules.layout),
         "shapes": {name: list(SHAPES[name].parameters) for name in DRAWN},
         "gains": gains is not None,
         "surfaces": [
@@ -56,17 +61,39 @@ def rulebase_state(rules: RuleBase, shared: Mapping[str, Sequence[str]]) -> dict
     }
 
 
-def _variable(variable: Variable, shared: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    universe = variable.universe
+def _variable(variable: Variable, rules: RuleBase, places: Places) -> dict[str, Any]:
+    universe, own = variable.universe, variable.operators
+    operators = None
+    if own is not None:
+        words = [own.conjunction, own.disjunction, own.defuzzification]
+        operators = {"words": words, "line": places.operators.get(variable.name)}
     return {
         "name": variable.name,
         "label": variable.axis_label,
         "universe": [universe.low, universe.high, universe.points],
         "default": variable.default,
-        "shared_with": shared.get(variable.name, ()),
-        "sets": [
-            {"name": s.name, "shape": s.shape, "parameters": s.parameters} for s in variable.sets
-        ],
+        "shared_with": places.shared.get(variable.name, ()),
+        "operators": operators,
+        "sets": [_set(each, variable, rules, places) for each in variable.sets],
+    }
+
+
+def _set(each: FuzzySet, variable: Variable, rules: RuleBase, places: Places) -> dict[str, Any]:
+    """A set; with its curve and its line in the text where a page does not know its shape."""
+    found = {"name": each.name, "shape": each.shape, "parameters": each.parameters}
+    if each.shape in DRAWN:
+        return found
+    low, high = variable.universe.low, variable.universe.high
+    is_curve = each.base != LINEAR
+    names = SHAPES[each.shape].parameters if is_curve else (*rules.input_names, "constant")
+    fits = len(each.parameters) == len(names) <= _MOST_NUMBERS
+    return {
+        **found,
+        "names": names if fits else (),
+        "grades": each.membership(np.linspace(low, high, _CURVE)) if is_curve else (),
+        "universe": [low, high],
+        "core": each.core(low, high) if each.has_core else None,
+        "line": places.sets.get((variable.name, each.name)),
     }
 
 
@@ -96,16 +123,22 @@ def _cell(rule: Rule, rules: RuleBase, layout: TableLayout) -> str:
     return found
 
 
-def _list(rules: RuleBase) -> dict[str, Any]:
+def _list(rules: RuleBase, places: Places) -> dict[str, Any]:
+    """Rules of a list; a text that does not load now may have other lines than the rules."""
+    known = len(places.rules) == len(rules.rules)
+    lines = places.rules if known else [(None, 1)] * len(rules.rules)
     return {
         "form": "list",
         "rules": [
             {
                 "if": dict(rule.conditions),
+                "or": [dict(group) for group in rule.alternatives],
+                "line": line,
+                "together": together,
                 "text": consequents_text(rule.consequents),
                 **_consequents(rule),
             }
-            for rule in rules.rules
+            for rule, (line, together) in zip(rules.rules, lines, strict=True)
         ],
     }
 
@@ -134,34 +167,3 @@ def cell_place(rules: RuleBase, where: Mapping[str, str]) -> list[int] | None:
     if row not in names[0] or column not in names[1]:
         return None
     return [names[0].index(row), names[1].index(column)]
-
-
-def shared_sets(text: str) -> dict[str, list[str]]:
-    """Variables of a text that share their sets by an anchor, each with the others.
-
-    Parameters
-    ----------
-    text : str
-        A rule base in YAML; what cannot be read shares nothing.
-    """
-    try:
-        document = Document(text.removeprefix("\ufeff"), "<text>")
-    except FileError:
-        return {}
-    root = document.root
-    groups: dict[int, list[str]] = {}
-    for role in ("inputs", "outputs"):
-        variables = root.entries.get(role) if isinstance(root, MappingNode) else None
-        if variables is None or not isinstance(variables[1], MappingNode):
-            continue
-        for name, (_, variable) in variables[1].entries.items():
-            sets = variable.entries.get("sets") if isinstance(variable, MappingNode) else None
-            if sets is not None and isinstance(sets[1], MappingNode):
-                # What an alias repeats has the same entries.
-                groups.setdefault(id(sets[1].entries), []).append(name)
-    return {
-        name: [other for other in names if other != name]
-        for names in groups.values()
-        for name in names
-        if len(names) > 1
-    }

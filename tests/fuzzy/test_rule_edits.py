@@ -175,3 +175,22 @@ def test_operators():
         set_operator(TABLE, "implication", "min")
     with pytest.raises(RuleBaseError, match="unknown or 'mx'; did you mean 'max'"):
         set_operator(TABLE, "or", "mx")
+
+
+def test_rules_of_if_any_are_set_together_on_request():
+    text = rulebase_path("tipper").read_text(encoding="utf-8")
+    where = {"food": "rancid"}
+    with pytest.raises(RuleBaseError, match="other rules share the conclusions"):
+        set_cell(text, where, "average")
+    for changed in (
+        set_cell(text, where, "average@0.5", together=True),
+        set_consequents(text, where, [Consequent("tip", "average", 0.5)], together=True),
+    ):
+        assert changed == text.replace("then: {tip: cheap}", "then: {tip: average@0.5}")
+        assert [str(rule).rpartition("then ")[2] for rule in changed.rules.rules] == [
+            "tip is average @ 0.5",
+            "tip is average @ 0.5",
+            "tip is average",
+            "tip is generous",
+            "tip is generous",
+        ]

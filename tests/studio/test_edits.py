@@ -173,7 +173,8 @@ def test_a_list_of_rules_and_one_input_are_shown(page):
     assert changed["rulebase"] == rules
     then = rule["parts"]
     removed = page.ask("remove_rule", index=0)["state"]["rulebase"]["rules"]["rules"]
-    assert removed == rules["rules"]["rules"][1:]
+    kept = [rule | {"line": rule["line"] - 1} for rule in rules["rules"]["rules"][1:]]
+    assert removed == kept
     added = page.ask("add_rule", **{"if": rule["if"], "then": then})["state"]
     assert added["rulebase"]["rules"]["rules"][-1]["parts"] == then
     rules = page.ask("open", name="omega-schedule")["state"]["rulebase"]

@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+from fuzzytrack.fuzzy.loading import rulebase_path
+
 playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
 expect = playwright.expect
 
@@ -187,3 +189,70 @@ def test_rules_of_a_list_are_added_and_removed(design):
     expect(rules.last).to_have_text("tip average@0.5")
     design.get_by_role("button", name="Remove this rule").click()
     expect(rules).to_have_count(5)
+
+
+def opened(page, name):
+    page.keyboard.press("Control+o")
+    page.get_by_label("Filter the names").fill(name)
+    page.keyboard.press("Enter")
+    expect(page.locator("#bar")).to_contain_text(name)
+
+
+def test_a_rule_says_several_words_each_with_its_confidence(design):
+    chosen = cell(design, "ze", "nm")
+    chosen.click()
+    design.get_by_label("several").check()
+    stiffness = design.get_by_role("group", name="stiffness")
+    stiffness.get_by_role("button", name="M").click()
+    expect(chosen).to_have_attribute("aria-label", re.compile(r"\[M-L@0.5, L-L@0.5\]$"))
+    design.get_by_label("Confidence of stiffness M").fill("0.3")
+    design.keyboard.press("Enter")
+    expect(chosen).to_have_attribute(
+        "aria-label", re.compile(r"stiffness: \[M@0.3, L@0.5\], damping: L")
+    )
+    design.get_by_label("Confidence of damping L").fill("2")
+    design.keyboard.press("Enter")
+    expect(design.locator("#status")).to_contain_text("a number from 0 to 1")
+    # Without the other word it is a rule as before; the keys do the same with Shift.
+    stiffness.get_by_role("button", name="M").focus()
+    design.keyboard.press("Enter")
+    expect(chosen).to_have_attribute("aria-label", re.compile(": L-L"))
+    design.get_by_label("several").uncheck()
+    stiffness.get_by_role("button", name="M").focus()
+    design.keyboard.press("Shift+Enter")
+    expect(chosen).to_have_attribute("aria-label", re.compile(r"\[M-L@0.5, L-L@0.5\]$"))
+
+
+def test_what_is_edited_as_text_leads_to_its_line(design, server):
+    text = rulebase_path("tipper").read_text(encoding="utf-8")
+    for old, new in [
+        ("{gaussmf: [5, 1.5]}", "{not gaussmf: [5, 1.5]}"),
+        ("{if: {service: good}, ", "{if: {service: good}, or: [{food: rancid, service: poor}],"),
+        ('unit: "%"', "operators: {and: min, or: sum, defuzzification: centroid}"),
+    ]:
+        assert old in text
+        text = text.replace(old, new)
+    (server.folder / "other.yaml").write_text(text)
+    opened(design, "other.yaml")
+    area = design.get_by_label("YAML of the rule base")
+
+    def expect_line(words):
+        expect(area).to_be_focused()
+        place = area.evaluate("area => area.value.slice(area.selectionStart).split('\\n')[0]")
+        assert words in place
+        design.keyboard.press("Escape")
+
+    rules = design.locator("#pane-rules td.cell")
+    expect(rules.nth(2).locator("xpath=..")).to_contain_text("or")
+    rules.nth(2).click()
+    design.get_by_role("button", name="text, line").first.click()
+    expect_line("{if: {service: good}, or: [")
+    design.locator(".operators").get_by_role("button", name="text, line").click()
+    expect_line("operators: {and: min")
+    # The numbers of a shape that is not dragged are typed.
+    design.get_by_label("good, sigma").fill("2")
+    design.keyboard.press("Enter")
+    rules.nth(0).click()
+    expect(design.locator("#pane-rules div.words")).to_contain_text("2 rules have this conclusion")
+    design.get_by_role("button", name="not gaussmf").click()
+    expect_line("good:      {not gaussmf: [5, 2]}")

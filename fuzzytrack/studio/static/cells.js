@@ -62,22 +62,28 @@ export function listRows({ inputs, rules }, slots) {
       html("th", { scope: "col", role: "columnheader" }, text),
     ),
   );
-  const lines = rules.rules.map(({ if: conditions }, y) =>
+  // Conditions after `or` are lines of their own.
+  const lines = rules.rules.map(({ if: conditions, or: others }, y) =>
     html(
       "tr",
       { role: "row" },
-      html("th", { scope: "row", role: "rowheader" }, String(y + 1)),
-      inputs.map(({ name }) =>
-        html(
+      html("th", { scope: "row", role: "rowheader" }, inLines([String(y + 1), ...others.map(() => "or")])),
+      inputs.map(({ name }) => {
+        const asked = [conditions, ...others].map((group) => group[name]);
+        return html(
           "td",
-          { role: "gridcell", class: name in conditions ? "if" : "if none" },
-          conditions[name] ?? "any",
-        ),
-      ),
+          { role: "gridcell", class: asked.some(Boolean) ? "if" : "if none" },
+          inLines(asked.map((set) => set ?? "any")),
+        );
+      }),
       slots[y].td,
     ),
   );
   return [html("thead", { role: "rowgroup" }, head), html("tbody", { role: "rowgroup" }, lines)];
+}
+
+function inLines(words) {
+  return words.length > 1 ? words.map((word) => html("div", {}, word)) : words;
 }
 
 // ---------------------------------------------------------------------- one cell

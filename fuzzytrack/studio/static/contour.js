@@ -6,7 +6,7 @@ import { html } from "./elements.js";
 import { shown, ticks } from "./numbers.js";
 import { pictureMenu } from "./pictures.js";
 import { signOf } from "./rulebase.js";
-import { SHAPES } from "./shapes.js";
+import { shapeOf } from "./shapes.js";
 import { makeStage } from "./stage.js";
 import { nameOf, paletteOf, rangeOf, spotOf } from "./surface.js";
 
@@ -219,7 +219,7 @@ function drawSets(pen, box, axes) {
     const reach = axis === 0 ? box.width : box.height;
     let last = -Infinity;
     for (const one of sets) {
-      const [, b, c] = SHAPES[one.shape].quad(one.parameters);
+      const [, b, c] = shapeOf(one).quad(one.parameters);
       const middle = (Math.max(low, Math.min(b, high)) + Math.min(high, Math.max(c, low))) / 2;
       const place = ((middle - low) / (high - low)) * reach;
       const needed = axis === 0 ? 5 + 6 * one.name.length : 11;

@@ -17,13 +17,13 @@ const INITIAL = {
   valuesError: null, explanation: null, gains: null, visits: null, runs: 0,
   scenario: null, job: null, results: null, asked: null, ranWith: null, tracked: null, tuned: null, uploads: [],
   // What is looked at.
-  view: "design", tab: "table", cell: null, variable: null, set: null, shown: null, colorBy: null,
+  view: "design", tab: "table", line: null, cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
   resultsTab: "all", hidden: [], sorting: { key: null, down: false }, quantity: "predicted", band: "se",
   gain: "alpha", pair: [null, null], walked: { tracker: null, run: 0 }, recording: null, described: null, working: false, trackShown: 0,
   axisShown: 0,
   // How.
-  points: 41, dragging: false, symmetric: false, snap: "grid", linked: false, mirror: false, shared: "both",
+  points: 41, dragging: false, symmetric: false, several: false, snap: "grid", linked: false, mirror: false, shared: "both",
   shadeVisits: false, palette: "viridis", scheme: "light",
   trackers: [], wantedRuns: 200, seed: 0, readings: {}, tuneOn: "scenario",
   tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },

@@ -27,6 +27,11 @@ export function signOf(name) {
   return GAINS[name] ?? name;
 }
 
+/** Whether a rule is edited in the text alone: its conclusions cannot be set by its conditions. */
+export function isOfText(rule) {
+  return Boolean(rule.or?.length);
+}
+
 /** The consequents of a cell or rule for one output: [{set, confidence}]. */
 export function consequents(cell, output) {
   return cell.parts.filter((part) => part.output === output);
@@ -70,16 +75,26 @@ export function withWord(cell, outputs, output, set) {
   );
 }
 
-/** Text of a cell in which an output says a set besides others, or no longer; they share it evenly. */
-export function withShare(cell, outputs, output, set) {
+/**
+ * Text of a cell in which an output says a set besides others, or no longer; they share it evenly. A
+ * rule of a list may say nothing of an output, if it says something of another.
+ */
+export function withShare(cell, outputs, output, set, form) {
   const said = consequents(cell, output).map((one) => one.set);
   const sets = said.includes(set) ? said.filter((one) => one !== set) : [...said, set];
-  if (!sets.length) return cell.text;
+  if (!sets.length && (form === "table" || cell.parts.length < 2)) return cell.text;
   const share = Number((1 / sets.length).toFixed(3));
   return textOf(outputs, (name) =>
     name === output
       ? sets.map((one) => ({ set: one, confidence: share }))
       : consequents(cell, name),
+  );
+}
+
+/** Text of a cell in which one of its consequents has another confidence. */
+export function withConfidence(cell, outputs, { output, set }, confidence) {
+  return textOf(outputs, (name) =>
+    consequents(cell, name).map((one) => (name === output && one.set === set ? { ...one, confidence } : one)),
   );
 }
 

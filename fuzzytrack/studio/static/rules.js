@@ -6,8 +6,9 @@ import {
 import { html, select } from "./elements.js";
 import { keepFocus } from "./focus.js";
 import { pictureMenu } from "./pictures.js";
-import { consequents, outputsOf, piecesOf, variable, withWord } from "./rulebase.js";
+import { consequents, isOfText, outputsOf, piecesOf, variable, withWord } from "./rulebase.js";
 import { complaintRows } from "./text.js";
+import { textLink } from "./textlink.js";
 import { showWords } from "./words.js";
 
 export const title = "Rules";
@@ -113,7 +114,7 @@ export function mount(element, app) {
     const [said] = consequents(slot.rule(state.rulebase.rules), output);
     const set = sets[sets.indexOf(said?.set) + step];
     const { rulebase } = state;
-    if (set) change(slot, withWord(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
+    if (set && !isOfText(slot.rule(rulebase.rules))) change(slot, withWord(slot.rule(rulebase.rules), outputsOf(rulebase), output, set));
   }
 
   function change(slot, text, refused) {
@@ -127,7 +128,12 @@ export function mount(element, app) {
 
   function open(slot, start) {
     if (editor) return;
-    const before = slot.rule(store.now.state.rulebase.rules).text;
+    const rule = slot.rule(store.now.state.rulebase.rules);
+    if (isOfText(rule)) {
+      app.show({ tab: "text", line: { line: rule.line, column: 1 } });
+      return;
+    }
+    const before = rule.text;
     const box = html("input", {
       type: "text",
       class: "mono",
@@ -197,8 +203,9 @@ export function mount(element, app) {
 
   // ------------------------------------------------------------------ below the grid
 
-  function showOperators({ operators: all }) {
-    operators.dataset.known = JSON.stringify(all);
+  function showOperators({ operators: all, outputs }) {
+    const own = outputs.filter((output) => output.operators);
+    operators.dataset.known = JSON.stringify([all, own]);
     operators.replaceChildren(
       ...Object.entries(all).map(([name, { value, choices }]) =>
         html(
@@ -213,14 +220,17 @@ export function mount(element, app) {
           ),
         ),
       ),
+      ...own.map(({ name, operators: { words: said, line } }) =>
+        html("p", { class: "note" }, `${name} has its own: ${said.join(", ")}. `, textLink(app, "text", line)),
+      ),
     );
   }
 
-  function goTo({ where, line }) {
+  function goTo({ where, line, column }) {
     const slot = slots.find((one) => one.key === keyOfComplaint(where));
     if (slot) slot.td.focus();
     else if (where?.set) store.set({ variable: where.variable, set: where.set });
-    else app.show({ tab: "text", line });
+    else app.show({ tab: "text", line: line ? { line, column } : null });
   }
 
   store.follow(["state"], ({ state }) => {
@@ -233,7 +243,8 @@ export function mount(element, app) {
       painted = "";
       build(rulebase);
     }
-    if (JSON.stringify(rulebase.operators) !== operators.dataset.known) {
+    const own = rulebase.outputs.filter((output) => output.operators);
+    if (JSON.stringify([rulebase.operators, own]) !== operators.dataset.known) {
       keepFocus(operators, () => showOperators(rulebase));
     }
     about.textContent = rulebase.description;
@@ -256,13 +267,13 @@ export function mount(element, app) {
     keepFocus(coloring, () => coloring.replaceChildren(chosen));
   });
   store.follow(
-    ["state", "colorBy", "palette", "explanation", "cell", "scheme", "symmetric"],
-    ({ state, colorBy: output, palette, explanation, cell, scheme, symmetric }) => {
+    ["state", "colorBy", "palette", "explanation", "cell", "scheme", "symmetric", "several"],
+    ({ state, colorBy: output, palette, explanation, cell, scheme, symmetric, several }) => {
       if (!state?.rulebase) return;
       // While a set is dragged the state changes many times a second, and no rule does.
       const { rules, outputs } = state.rulebase;
       const sets = outputs.map((one) => one.sets.map(({ name }) => name));
-      const looks = [output, palette, cell, scheme, symmetric];
+      const looks = [output, palette, cell, scheme, symmetric, several];
       const now = JSON.stringify([rules, sets, state.complaints, explanation, looks]);
       if (now === painted) return;
       painted = now;
@@ -295,7 +306,7 @@ function layoutOf({ rules, inputs }) {
   if (rules.form === "table") {
     return JSON.stringify([rules.rows, rules.columns, rules.row_sets, rules.column_sets]);
   }
-  return JSON.stringify([inputs.map(({ name }) => name), rules.rules.map((one) => one.if)]);
+  return JSON.stringify([inputs.map(({ name }) => name), rules.rules.map((one) => [one.if, one.or])]);
 }
 
 function sentence(text) {

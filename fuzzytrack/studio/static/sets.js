@@ -7,8 +7,9 @@ import { keepFocus } from "./focus.js";
 import { icon } from "./icons.js";
 import { shown, ticks, tidy, typed } from "./numbers.js";
 import { pictureMenu, svgFile } from "./pictures.js";
+import { textLink } from "./textlink.js";
 import { variable, variables } from "./rulebase.js";
-import { SHAPES, mirrored, moved, reshaped, shifted } from "./shapes.js";
+import { SHAPES, isDrawn, mirrored, moved, reshaped, shapeOf, shifted } from "./shapes.js";
 
 export const title = "Sets";
 const MARGIN = { left: 30, right: 14, top: 34, bottom: 36 };
@@ -17,6 +18,9 @@ const NEAR = 10;
 // Pixels within which a corner snaps to another.
 const SNAP = 5;
 
+const SHAPES_OF_TEXT =
+  "Type the numbers of shapes that are links; to change the shape, follow the link. A linear set has " +
+  "no curve: it is the sum of the inputs times its numbers, and of the constant.";
 // The handle that moves a set as a whole, as dragging its curve does.
 const WHOLE = { name: "whole set", grade: 0.5 };
 
@@ -170,6 +174,7 @@ export function mount(element, app) {
     const { linked, mirror } = store.now;
     const { universe } = current();
     const sets = held?.all ?? current().sets;
+    if (!isDrawn(one)) return [{ set: one.name, parameters: parameters.map(tidy) }];
     const changed = new Map([[one.name, { set: one.name, shape: one.shape, parameters }]]);
     if (linked && possible()) {
       for (const [from, to] of movedCorners(one, parameters)) {
@@ -181,6 +186,7 @@ export function mount(element, app) {
       for (const { set, shape, parameters: p } of [...changed.values()]) {
         const twin = sets[sets.length - 1 - sets.findIndex(({ name }) => name === set)];
         const image = mirrored({ shape, parameters: p }, middle);
+        if (!isDrawn(twin)) continue;
         if (twin.name === set) image.parameters = evened({ shape, parameters: p }, twin.parameters, middle);
         else if (changed.has(twin.name)) continue;
         changed.set(twin.name, { set: twin.name, ...image });
@@ -239,7 +245,7 @@ export function mount(element, app) {
     if (free || store.now.snap === "off") return value;
     const places = current()
       .sets.filter(({ name }) => name !== own)
-      .flatMap((one) => SHAPES[one.shape].corners.map((corner) => corner.place(one.parameters)));
+      .flatMap((one) => shapeOf(one).corners.map((corner) => corner.place(one.parameters)));
     const reach = SNAP * scale().pixel;
     const near = places.filter((place) => Math.abs(place - value) < reach);
     if (near.length) return near.sort((a, b) => Math.abs(a - value) - Math.abs(b - value))[0];
@@ -303,7 +309,7 @@ export function mount(element, app) {
     const touch = event.pointerType === "mouse" ? 1 : 1.8;
     let best = null;
     for (const one of current().sets) {
-      for (const corner of SHAPES[one.shape].corners) {
+      for (const corner of shapeOf(one).corners) {
         const place = clamp(corner.place(one.parameters), at);
         const far = Math.hypot(at.x(place) - x, at.y(corner.grade) - y) - (one.name === chosen ? 4 : 0);
         if (far < NEAR * touch && far < (best?.far ?? Infinity)) best = { set: one.name, corner, far };
@@ -312,11 +318,11 @@ export function mount(element, app) {
     if (best) return best;
     const value = at.value(x);
     const byCurve = current().sets
-      .map((one) => ({ set: one.name, far: Math.abs(at.y(SHAPES[one.shape].grade(value, one.parameters)) - y) }))
+      .map((one) => ({ set: one.name, far: Math.abs(at.y(shapeOf(one).grade(value, one.parameters)) - y) }))
       .filter(({ far }) => far < NEAR * touch && y < at.y(0.02))
       .sort((a, b) => a.far - b.far);
     const inside = current().sets.find(({ name }) => name === chosen);
-    const grade = SHAPES[inside.shape].grade(value, inside.parameters);
+    const grade = shapeOf(inside).grade(value, inside.parameters);
     if (y > at.y(grade) && y < at.y(0.02)) return { set: chosen, value };
     return byCurve.length ? { ...byCurve[0], value } : null;
   }
@@ -329,7 +335,8 @@ export function mount(element, app) {
     const again = found.set === chosenSet();
     store.set({ set: found.set });
     // A first press on a curve chooses it; only the chosen set is dragged as a whole.
-    if (found.corner || again) grab(found.set, found.corner, found.value);
+    const whole = again && isDrawn(current().sets.find(({ name }) => name === found.set));
+    if (found.corner || whole) grab(found.set, found.corner, found.value);
     if (held) handles.children[handlesOf(held.before).indexOf(found.corner ?? WHOLE)]?.focus();
   });
   picture.addEventListener("pointermove", (event) => {
@@ -356,6 +363,7 @@ export function mount(element, app) {
       keepFocus(table, () => fillTable(sets));
     }
     showHeads(sets);
+    note.textContent = sets.every(isDrawn) ? "" : SHAPES_OF_TEXT;
     sets.forEach((one, k) => {
       const row = table.tBodies[0].rows[k];
       row.classList.toggle("chosen", one.name === chosenSet());
@@ -367,7 +375,7 @@ export function mount(element, app) {
 
   /** The parameters of the chosen set stand over the columns. */
   function showHeads(sets) {
-    const own = SHAPES[sets.find(({ name }) => name === chosenSet()).shape].parameters;
+    const own = shapeOf(sets.find(({ name }) => name === chosenSet())).parameters;
     longest(sets).forEach((name, k) => {
       table.tHead.rows[0].cells[2 + k].textContent = own[k] ?? name;
     });
@@ -393,7 +401,7 @@ export function mount(element, app) {
       onclick: () => store.set({ set: one.name }),
     });
     swatch.style.setProperty("--paint", lineColor(palette, shareOf(current(), one.name)));
-    const fields = SHAPES[one.shape].parameters.map((name, k) => html("td", {}, numberBox(one, name, k)));
+    const fields = shapeOf(one).parameters.map((name, k) => html("td", {}, numberBox(one, name, k)));
     const rest = Array.from({ length: most - fields.length }, () => html("td"));
     return html(
       "tr",
@@ -472,6 +480,8 @@ export function mount(element, app) {
   }
 
   function shapeBox(one) {
+    // A shape that the page does not draw stays what it is; its numbers may be typed.
+    if (!isDrawn(one)) return textLink(app, one.shape, one.line, true);
     const shapes = Object.entries(SHAPES).map(([key, { title: text }]) => [key, text]);
     return select(`Shape of ${one.name}`, shapes, one.shape, (shape) => {
       const now = current().sets.find(({ name }) => name === one.name);
@@ -564,7 +574,7 @@ export function mount(element, app) {
 
 /** Names of the parameters of a set that has most of them. */
 function longest(sets) {
-  const all = sets.map(({ shape }) => SHAPES[shape].parameters);
+  const all = sets.map((one) => shapeOf(one).parameters);
   return all.reduce((best, one) => (one.length > best.length ? one : best));
 }
 
@@ -578,19 +588,19 @@ function clamp(value, { low, high }) {
 }
 
 /** What a set is moved by: its corners, and itself as a whole. */
-function handlesOf({ shape }) {
-  const { corners } = SHAPES[shape];
+function handlesOf(one) {
+  const { corners } = shapeOf(one);
   return corners.length > 1 ? [...corners, WHOLE] : corners;
 }
 
-function placeOf({ shape, parameters }, corner) {
-  if (corner !== WHOLE) return corner.place(parameters);
-  const [, b, c] = SHAPES[shape].quad(parameters);
+function placeOf(one, corner) {
+  if (corner !== WHOLE) return corner.place(one.parameters);
+  const [, b, c] = shapeOf(one).quad(one.parameters);
   return (b + c) / 2;
 }
 
-function cornersAt({ shape, parameters }, place) {
-  return SHAPES[shape].corners.filter((corner) => Math.abs(corner.place(parameters) - place) < 1e-9);
+function cornersAt(one, place) {
+  return shapeOf(one).corners.filter((corner) => Math.abs(corner.place(one.parameters) - place) < 1e-9);
 }
 
 /** A set that is its own mirror: what was changed changes on the other side; the middle stays. */
@@ -603,7 +613,7 @@ function evened(one, before, middle) {
 
 /** Corners of a set that a change moves: pairs of the place before and after. */
 function movedCorners(one, parameters) {
-  return SHAPES[one.shape].corners
+  return shapeOf(one).corners
     .map((corner) => [corner.place(one.parameters), corner.place(parameters)])
     .filter(([from, to]) => from !== to);
 }
@@ -626,12 +636,13 @@ function axis(at, { name, label }) {
 }
 
 function curve(at, one, stroke, chosen) {
-  const { grade, corners } = SHAPES[one.shape];
+  const { grade, corners } = shapeOf(one);
   const even = Array.from({ length: 161 }, (_, k) => at.low + ((at.high - at.low) * k) / 160);
   const exact = corners.map((corner) => corner.place(one.parameters)).filter((x) => x >= at.low && x <= at.high);
   // Beside a corner too, where a vertical flank jumps.
   const beside = exact.flatMap((x) => [x - 1e-9 * (at.high - at.low), x, x + 1e-9 * (at.high - at.low)]);
   const places = [...even, ...beside].filter((x) => x >= at.low && x <= at.high).sort((a, b) => a - b);
+  if (Number.isNaN(grade(at.low, one.parameters))) return svg("g");
   const points = places.map((x) => `${at.x(x).toFixed(1)},${at.y(grade(x, one.parameters)).toFixed(1)}`);
   const line = svg("polyline", { class: chosen ? "curve chosen" : "curve", points: points.join(" "), stroke });
   if (!chosen) return line;
@@ -643,10 +654,11 @@ function curve(at, one, stroke, chosen) {
 function labels(at, sets, chosen, paint) {
   const ends = [-Infinity, -Infinity];
   const places = sets.map((one) => {
-    const [, b, c] = SHAPES[one.shape].quad(one.parameters);
+    const [, b, c] = shapeOf(one).quad(one.parameters);
     return { name: one.name, x: (at.x(clamp(b, at)) + at.x(clamp(c, at))) / 2 };
   });
   return places
+    .filter(({ x }) => Number.isFinite(x))
     .sort((a, b) => a.x - b.x)
     .map(({ name, x }) => {
       const half = 4 * name.length + 3;

@@ -154,6 +154,25 @@ export const SHAPES = {
   },
 };
 
+/** How a set is drawn. One of a shape that is not known here has no corners, and the server's curve. */
+export function shapeOf(set) {
+  return SHAPES[set.shape] ?? curveOf(set);
+}
+
+export function isDrawn({ shape }) {
+  return shape in SHAPES;
+}
+
+function curveOf({ shape, names, grades, core, universe: [low, high] }) {
+  const grade = (x) => {
+    const at = Math.max(0, Math.min(1, (x - low) / (high - low))) * (grades.length - 1);
+    const k = Math.min(grades.length - 2, Math.floor(at));
+    return grades.length ? grades[k] + (grades[k + 1] - grades[k]) * (at - k) : NaN;
+  };
+  const [start, end] = core ?? [NaN, NaN];
+  return { title: shape, parameters: names, corners: [], grade, quad: () => [start, start, end, end] };
+}
+
 /** Parameters with one corner moved to `x`, as far as its neighbors let it. */
 export function moved({ shape, parameters }, corner, x, least) {
   const kind = SHAPES[shape];

@@ -85,7 +85,7 @@ export function mount(element, app) {
     }
   });
 
-  store.follow(["state", "tab"], ({ state, tab }) => {
+  store.follow(["state", "tab", "line"], ({ state, tab, line }) => {
     if (!state || tab !== "text") return;
     // What is being typed is newer than the answer to what was typed before.
     const text = withoutReturns(state.text);
@@ -96,7 +96,11 @@ export function mount(element, app) {
       area.scrollTop = scrollTop;
     }
     paint();
-    complaints.replaceChildren(...complaintRows(state.complaints, ({ line, column }) => goTo(line, column)));
+    complaints.replaceChildren(...complaintRows(state.complaints, (place) => goTo(place.line, place.column)));
+    if (!line) return;
+    store.set({ line: null });
+    // The pane is shown by those that hear of the tab after this.
+    requestAnimationFrame(() => goTo(line.line, line.column));
   });
 }
 

@@ -5,7 +5,8 @@ import { ask } from "./dialogs.js";
 import { check, html, select } from "./elements.js";
 import { icon } from "./icons.js";
 import { typed } from "./numbers.js";
-import { consequents, outputsOf, variable, withShare, withWord } from "./rulebase.js";
+import { consequents, isOfText, outputsOf, variable, withConfidence, withShare, withWord } from "./rulebase.js";
+import { textLink } from "./textlink.js";
 
 /** Show the words of the rule in a slot, or what to do first; `change(slot, text)` edits a rule. */
 export function showWords(element, app, slot, change) {
@@ -17,8 +18,20 @@ export function showWords(element, app, slot, change) {
     return;
   }
   const rule = slot.rule(rulebase.rules);
+  const where = html("div", { class: "where" }, html("b", {}, slot.name), html("span", { class: "mono" }, rule.text));
+  if (isOfText(rule)) {
+    const why = html("p", { class: "note" }, "A rule with 'or' is edited in the ", textLink(app, "text", rule.line), ".");
+    element.replaceChildren(where, why, adder(app));
+    return;
+  }
   element.replaceChildren(
-    html("div", { class: "where" }, html("b", {}, slot.name), html("span", { class: "mono" }, rule.text)),
+    where,
+    ...(rule.together > 1
+      ? [
+          html("p", { class: "note" }, `${rule.together} rules have this conclusion, and change together; `,
+            "they are parted in the ", textLink(app, "text", rule.line), "."),
+        ]
+      : []),
     ...outputsOf(rulebase).map((name) => row(app, slot, rule, variable(rulebase, name), change)),
     html(
       "div",
@@ -26,6 +39,8 @@ export function showWords(element, app, slot, change) {
       html("span", { class: "name" }, "confidence"),
       sureBox(app, slot, rule),
       html("span", { class: "space" }),
+      check("several", app.store.now.several, (on) => app.store.set({ several: on }),
+        "A word is said besides the others, or no longer; as with Shift"),
       isList ? [adder(app), remover(app, slot)] : symmetry(app),
     ),
   );
@@ -36,9 +51,12 @@ function symmetry({ store }) {
     "Give the cell mirrored through the middle of the table the same words");
 }
 
-function row({ store }, slot, rule, target, change) {
-  const said = consequents(rule, target.name).map(({ set }) => set);
-  const outputs = outputsOf(store.now.state.rulebase);
+function row(app, slot, rule, target, change) {
+  const { store } = app;
+  const parts = consequents(rule, target.name);
+  const said = parts.map(({ set }) => set);
+  const { rulebase } = store.now.state;
+  const outputs = outputsOf(rulebase);
   const chips = target.sets.map(({ name }) => {
     const paint = color(store.now.palette, shareOf(target, name));
     const chip = html(
@@ -47,9 +65,14 @@ function row({ store }, slot, rule, target, change) {
         type: "button",
         class: "chip",
         "aria-pressed": String(said.includes(name)),
-        title: "With Shift besides the other sets",
+        title: "With Shift besides the other words",
         onclick: ({ shiftKey }) =>
-          change(slot, (shiftKey ? withShare : withWord)(rule, outputs, target.name, name)),
+          change(
+            slot,
+            shiftKey || store.now.several
+              ? withShare(rule, outputs, target.name, name, rulebase.rules.form)
+              : withWord(rule, outputs, target.name, name),
+          ),
       },
       name,
     );
@@ -62,7 +85,39 @@ function row({ store }, slot, rule, target, change) {
     { class: "word-row", role: "group", "aria-label": target.name },
     html("span", { class: "name", title: target.label }, target.name),
     html("div", { class: "chips" }, chips),
+    rule.weight === null ? shares(app, parts, (part, sure) => change(slot, withConfidence(rule, outputs, part, sure))) : null,
   );
+}
+
+/** The confidence of each of the words that a rule says of an output. */
+function shares(app, parts, send) {
+  return html(
+    "div",
+    { class: "shares" },
+    parts.map((part) =>
+      html("label", {}, html("span", {}, part.set), shareBox(app, part, (sure) => send(part, sure))),
+    ),
+  );
+}
+
+function shareBox({ say }, { output, set, confidence }, send) {
+  const box = html("input", {
+    type: "text",
+    inputmode: "decimal",
+    class: "number",
+    size: 4,
+    "aria-label": `Confidence of ${output} ${set}, from 0 to 1`,
+    onchange: () => {
+      const sure = typed(box.value);
+      if (sure >= 0 && sure <= 1) send(sure);
+      else {
+        say("Confidence: type a number from 0 to 1.", "error");
+        box.value = String(confidence);
+      }
+    },
+  });
+  box.value = String(confidence);
+  return box;
 }
 
 function sureBox({ store, edit, say }, slot, rule) {
