@@ -18,7 +18,9 @@ PLOT, PLOTS, SEGMENT, INTERVALS, SUM = 5, 6, 7, 8, 9
 # What has been counted in it, and whether it has stopped at a row that is out of order.
 COPIES, STALES, DELAYED, SEGMENTS, COASTED, WRAPS = range(10, 16)
 STOPPED = 16
-OWN = 17
+# Time of the row before the last one.
+BEFORE = 17
+OWN = 18
 
 # Rules.
 STALE, LEAST_STEP, MAX_GAP, MAX_COAST, RECOGNIZE, GAP_FACTOR, GAP_INTERVALS = range(7)
@@ -99,6 +101,8 @@ def clean_rows(
             if wrong < 0:
                 wrong = i
             continue
+        started = state[track + STARTED] != 0.0
+        state[track + BEFORE] = state[track + TIME] if started else -math.inf
         state[track + STARTED], state[track + TIME] = 1.0, now
         state[track + ROW], state[track + FILE] = float(rows[i]), float(file)
         plot = False

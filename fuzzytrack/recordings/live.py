@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.cleaning_rules import Cleaning
-from fuzzytrack.io.cleaning_step import SEGMENT, TIME
+from fuzzytrack.io.cleaning_step import BEFORE, SEGMENT, TIME
 from fuzzytrack.io.findings import Findings
 from fuzzytrack.io.piece import Piece
 from fuzzytrack.io.table import Words
@@ -32,7 +32,7 @@ from fuzzytrack.recordings.live_answers import (
     joined_answers,
     taken,
 )
-from fuzzytrack.recordings.live_faults import LiveFaults
+from fuzzytrack.recordings.live_faults import FAR_AHEAD, LiveFaults
 from fuzzytrack.recordings.preparation import PreparedPlots
 from fuzzytrack.recordings.recent_rows import RecentRows, Row, piece_of_rows, row_of
 from fuzzytrack.recordings.restarts import Restarts
@@ -60,7 +60,9 @@ class LiveTracks:
     lateness : float
         A plot that is older than the newest one of its track by at most so much (s) is put in its
         place, and the answers after it are given again where they change. Older ones, and with 0
-        all that are out of order, are counted and not used.
+        all that are out of order, are counted and not used. Where two of these follow each other
+        in time after all but the newest plot of their track, and that is more than a minute, and
+        the lateness, ahead of them, its time is wrong: the track begins anew with the second.
     forget : float, optional
         A track without a row for longer than this (s) is forgotten: nothing of it is kept, and a
         later plot of its identity begins a new track, in segment 0. It is looked for every 4096
@@ -77,6 +79,8 @@ class LiveTracks:
         copies of earlier plots, and of tracks that were forgotten.
     recent : dict of str to RecentRows
         With `lateness`, the last rows of each identity.
+    too_late : dict of str to float
+        Time (s) of the last plot of a track, if that was too late.
 
     Raises
     ------
@@ -129,9 +133,10 @@ class LiveTracks:
         self._restarts, self._rows = Restarts(), TrackRows(table)
         self._rejected: Counter[str] = Counter()
         self.recent: dict[str, RecentRows] = {}
+        self.too_late: dict[str, float] = {}
         self._swept = _SWEEP
-        # Line and time (s) of the last row; those that are put in their place come later.
-        self._last = 0, -math.inf
+        # Lines and times (s) of the last two rows; those that are put in their place come later.
+        self._last = [(0, -math.inf)] * 2
         self.counts = dict.fromkeys(("answers", "revisions", "late", "copies", "forgotten"), 0)
         self._gone = np.zeros(2, dtype=np.int64)
 
@@ -217,6 +222,9 @@ class LiveTracks:
         judged = self._cleaner.advance_live(piece)
         cleaned = judged.cleaned
         self._see(judged.seen)
+        if self.too_late:
+            for id in set(_ids(judged.seen)) & set(self.too_late):
+                del self.too_late[id]
         if len(cleaned):
             columns = self._tracked(cleaned)
             if self.lateness:
@@ -229,14 +237,16 @@ class LiveTracks:
         late = np.zeros(len(waiting), dtype=np.bool_)
         late[np.unique(waiting.ids.codes, return_index=True)[1]] = True
         self._see(waiting.take(late))
-        self._place(waiting.take(late), parts)
+        begins = self._place(waiting.take(late), parts)
+        # The first row of a track that begins anew is taken once more.
+        late[np.flatnonzero(late)[begins]] = False
         return waiting.take(~late)
 
     def _see(self, rows: Piece) -> None:
-        """Keep the time of the last line, in whatever order lines are taken."""
-        if len(rows):
-            last = int(rows.rows.argmax())
-            self._last = max(self._last, (int(rows.rows[last]), float(rows.time[last])))
+        """Keep the times of the last two lines, in whatever order lines are taken."""
+        newest = np.argsort(rows.rows)[-2:]
+        seen = zip(rows.rows[newest].tolist(), rows.time[newest].tolist(), strict=True)
+        self._last = sorted([*self._last, *seen])[-2:]
 
     def _tracked(self, cleaned: Piece) -> dict[str, Any]:
         """Columns of the answers to rows that are in order."""
@@ -286,11 +296,14 @@ class LiveTracks:
             if row.before is not None:
                 recent.prune(time - self.lateness)
 
-    def _place(self, rows: Piece, parts: list[AnswerPart]) -> None:
-        """Put late rows in their place, at most one of each track, and run the tracks again."""
-        again = {}
-        newest = self._cleaner.numbers(_ids(rows), self._axes)[:, TIME].tolist()
-        for k, last in enumerate(newest):
+    def _place(self, rows: Piece, parts: list[AnswerPart]) -> list[int]:
+        """Put late rows in their place, at most one of each track, and run the tracks again.
+
+        Gives the places of rows with which a track begins anew.
+        """
+        again, begins = {}, []
+        newest = self._cleaner.numbers(_ids(rows), self._axes)[:, [TIME, BEFORE]].tolist()
+        for k, (last, before) in enumerate(newest):
             id, time = rows.ids[k], float(rows.time[k])
             recent = self.recent.get(id, RecentRows())
             # Older rows may still be there, but must not decide: it depends on how rows come.
@@ -299,14 +312,36 @@ class LiveTracks:
             if same is not None and _equal(same.plot, rows.plots[k].tolist()):
                 self.counts["copies"] += 1
             elif same is not None or time == last:
-                self._fault("repeated", rows, k, "its track has a plot at this time already")
-            elif not in_reach:
-                self._fault("too_late", rows, k, f"{last - time:.6g} s older than its track")
-            else:
+                self._fault(
+                    "repeated", rows, k, "its track has a plot at this time already; not used"
+                )
+            elif in_reach:
+                self.too_late.pop(id, None)
                 again[id] = recent.insert(row_of(rows, k))
+            elif before < self.too_late.get(id, math.inf) < time < last - self.lateness - FAR_AHEAD:
+                begins.append(k)
+            else:
+                self.too_late[id] = time
+                self._fault(
+                    "too_late", rows, k, f"{last - time:.6g} s older than its track; not used"
+                )
         if again:
             self.counts["late"] += len(again)
             parts.append(self._again(again))
+        for k in begins:
+            self._begin_anew(rows, k)
+        return begins
+
+    def _begin_anew(self, rows: Piece, k: int) -> None:
+        """Forget what is known of the track of a row, and go on with its next segment."""
+        id = rows.ids[k]
+        newest, segment = self._cleaner.numbers([id], self._axes)[0, [TIME, SEGMENT]].tolist()
+        ahead = f"{newest - float(rows.time[k]):.6g} s"
+        self._fault("ahead", rows, k, f"its track begins anew; the newest plot was {ahead} ahead")
+        self._drop([id])
+        fresh = self._cleaner.numbers([id], self._axes)
+        fresh[:, SEGMENT] = segment + 1
+        self._cleaner.put([id], fresh)
 
     def _again(self, again: dict[str, tuple[int, int]]) -> AnswerPart:
         """Run tracks again from a row on, for a late one; answers to that, and those changed."""
@@ -342,7 +377,7 @@ class LiveTracks:
         id, cells = rows.ids[k], rows.time_cells
         time = rows.time[k] if cells is None else cells[k]
         whose = f" (id {id!r})" if id else ""
-        self.faults.add(kind, f"line {rows.rows[k]}: time {time}{whose}: {what}; not used")
+        self.faults.add(kind, f"line {rows.rows[k]}: time {time}{whose}: {what}")
 
     # ---------------------------------------------------------------- tracks as numbers
 
@@ -358,6 +393,7 @@ class LiveTracks:
             "past": self._cleaner.past.copy(),
             "gone": np.array([*self._gone, self._swept]),
             "last": np.array(self._last),
+            "too_late": np.array([self.too_late.get(id, math.nan) for id in self.ids]),
         }
 
     def set_common(self, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -366,8 +402,9 @@ class LiveTracks:
         self._cleaner.clock = period, now, int(fills)
         self._cleaner.past[:] = arrays["past"]
         *self._gone[:], self._swept = arrays["gone"].tolist()
-        line, time = arrays["last"].tolist()
-        self._last = int(line), time
+        self._last = [(int(line), time) for line, time in arrays["last"].tolist()]
+        late = zip(self.ids, arrays["too_late"].tolist(), strict=True)
+        self.too_late = {id: time for id, time in late if not math.isnan(time)}
 
     def numbers(self, ids: Sequence[str]) -> Array:
         """All that is known of tracks, shape (n_tracks, n_numbers); unknown ones are begun."""
@@ -411,21 +448,27 @@ class LiveTracks:
 
     def _sweep(self, silent: float) -> None:
         """Forget tracks that were silent for so long (s)."""
-        ids, now = self._cleaner.ids, self._last[1]
+        # Of two lines one has no wrong time, so not all tracks seem to be silent.
+        ids, now = self._cleaner.ids, min(time for _, time in self._last)
         if not ids:
             return
         known = self._cleaner.numbers(ids, self._axes)
         old = known[:, TIME] < now - silent
         gone = [id for id, is_old in zip(ids, old.tolist(), strict=True) if is_old]
-        names = [_name(id, s) for id, s in zip(gone, known[old, SEGMENT].tolist(), strict=True)]
-        self._tracks.end(names)
+        self._drop(gone)
+        self.counts["forgotten"] += len(gone)
+
+    def _drop(self, gone: list[str]) -> None:
+        """Keep nothing of tracks."""
+        segments = self._cleaner.numbers(gone, self._axes)[:, SEGMENT].tolist()
+        self._tracks.end([_name(*each) for each in zip(gone, segments, strict=True)])
         self._cleaner.forget(gone)
         self._gone += [sum(self._rejected.pop(id, 0) for id in gone), sum(self._restarts.of(gone))]
         self._restarts.put(gone, [0] * len(gone))
         self._rows.last.forget(gone)
         for id in gone:
             self.recent.pop(id, None)
-        self.counts["forgotten"] += len(gone)
+            self.too_late.pop(id, None)
 
 
 def check_rules(rules: Cleaning, lateness: float, forget: float | None) -> None:

@@ -8,7 +8,10 @@ from collections.abc import Callable
 
 from fuzzytrack.plurals import counted
 
-__all__ = ["FAULTS", "LiveFaults"]
+__all__ = ["FAR_AHEAD", "FAULTS", "LiveFaults"]
+
+#: A time that is ahead of all others by more than this (s), and the lateness, is wrong.
+FAR_AHEAD = 60.0
 
 #: Kinds of faults: what one is called, and several.
 FAULTS = {
@@ -18,6 +21,10 @@ FAULTS = {
         "plots at times that their tracks have already, not used",
     ),
     "too_late": ("plot too late, not used", "plots too late, not used"),
+    "ahead": (
+        "time far ahead, after which its track began anew",
+        "times far ahead, after which their tracks began anew",
+    ),
 }
 # Seconds after which a fault of the same kind is told of again.
 _QUIET = 10.0

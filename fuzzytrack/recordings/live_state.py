@@ -27,7 +27,7 @@ class LiveState(RunState):
     """State of a live run of tracks with identities, see `RunState`."""
 
     format = "fuzzytrack live state"
-    version = 1
+    version = 2
     run = "track"
 
     @classmethod

@@ -30,6 +30,8 @@ class ScanFindings(Findings):
         Rows with values beyond any use.
     late : int
         Plots that came too late, and were left out.
+    ahead : int
+        Plots whose time was far ahead of all others, and which were left out.
     wraps : int
         Times that the clock has started again.
     own_known, own_missing, own_jumps : int
@@ -47,13 +49,14 @@ class ScanFindings(Findings):
     copies: int = 0
     fills: int = 0
     late: int = 0
+    ahead: int = 0
     wraps: int = 0
     own_known: int = 0
     own_missing: int = 0
     own_jumps: int = 0
     doubt: str = ""
 
-    _FAULTS = ("missed", "copies", "fills", "late", "wraps", "own_missing", "own_jumps")
+    _FAULTS = ("missed", "copies", "fills", "late", "ahead", "wraps", "own_missing", "own_jumps")
 
     @property
     def counts(self) -> dict[str, int]:
@@ -96,6 +99,11 @@ class ScanFindings(Findings):
             (self.fills, "of these with a value beyond any use", "of these with values beyond use"),
             (self.copies, "exact copy of a plot dropped", "exact copies of plots dropped"),
             (self.late, "plot came too late, left out", "plots came too late, left out"),
+            (
+                self.ahead,
+                "time far ahead of all others, left out",
+                "times far ahead of all others, left out",
+            ),
             (self.wraps, "time that the clock started again", "times that the clock started again"),
             (
                 self.own_missing,

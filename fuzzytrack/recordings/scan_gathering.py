@@ -10,6 +10,7 @@ import numpy as np
 
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.recordings.live_faults import FAR_AHEAD
 from fuzzytrack.recordings.radar_place import RadarPlace
 from fuzzytrack.recordings.scan_cut import Cutter, ScanCut
 from fuzzytrack.recordings.scan_findings import ScanFindings
@@ -41,7 +42,8 @@ class GatheringRules:
     moved : bool
         Whether plots are relative to the positions of the list of scans.
     drop_late : bool
-        Whether scans that are not later than the one before are left out; else they are an error.
+        Whether scans that are not later than the one before, and one that is far ahead of both its
+        neighbors, are left out; else they are an error.
     radar : tuple of float
         Position of the radar before one is found in the rows or in the list of scans (m).
     has_own : bool
@@ -102,7 +104,7 @@ class ScanGathering:
         for begin in begins.tolist():
             if begin > before:
                 self._open.append(rows.take(slice(before, begin)))
-            yield from self._close()
+            yield from self._close(float(rows.time[begin]))
             before = begin
         if before < len(rows):
             self._open.append(rows.take(slice(before, len(rows))))
@@ -119,12 +121,17 @@ class ScanGathering:
 
     # ---------------------------------------------------------------- one scan
 
-    def _close(self) -> Iterator[Scan]:
+    def _close(self, following: float = math.nan) -> Iterator[Scan]:
+        """The scan so far; `following` is the time of the first row of the next (s)."""
         if not self._open:
             return
         rows = ScanRows.joined(self._open)
         self._open = []
         time, place = float(rows.time.max()), -1
+        # Otherwise all scans that come until then would be late.
+        if self.rules.drop_late and self._is_far_ahead(time, following):
+            self._findings.ahead += len(rows)
+            return
         if self._list is not None:
             place = self._place_in_list(rows)
             yield from self._listed_until(place)
@@ -140,6 +147,10 @@ class ScanGathering:
             yield from self._silent_until(rows, time)
         self._remember(rows)
         yield self._scan(rows, time, place)
+
+    def _is_far_ahead(self, time: float, following: float) -> bool:
+        """Whether a scan ends far after the one before, and after the next has begun."""
+        return time - following > FAR_AHEAD and not time - self._time <= FAR_AHEAD
 
     def _scan(self, rows: ScanRows, time: float, place: int) -> Scan:
         own = self._own_at(rows, time, place)

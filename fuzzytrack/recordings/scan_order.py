@@ -10,6 +10,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.cleaning_step import PERIODS
 from fuzzytrack.io.decoder import PlotDecoder
+from fuzzytrack.recordings.live_faults import FAR_AHEAD
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_rows import ScanRows
 
@@ -71,6 +72,9 @@ class CountedOn:
 class RowOrder:
     """Puts rows in order of time, as far as they are not too late.
 
+    One row whose time is far ahead of the row before it and of the one after it is left out:
+    otherwise all that come until then would be too late.
+
     Parameters
     ----------
     lateness : float or None
@@ -79,7 +83,7 @@ class RowOrder:
     decoder : PlotDecoder
         For messages.
     findings : ScanFindings
-        Counts late rows.
+        Counts rows that are late or far ahead.
     """
 
     def __init__(
@@ -87,6 +91,9 @@ class RowOrder:
     ) -> None:
         self._lateness, self._decoder, self._findings = lateness, decoder, findings
         self._held: list[ScanRows] = []
+        # The last row, if it is far ahead of the one before, whose time stands below.
+        self._apart: ScanRows | None = None
+        self._before = -math.inf
         self._newest = -math.inf
 
     def advance(self, rows: ScanRows) -> ScanRows:
@@ -99,28 +106,49 @@ class RowOrder:
         """
         if not len(rows):
             return rows
+        if self._lateness is not None:
+            return self._in_order(self._without_far(rows, self._lateness), self._lateness)
         newest = np.maximum.accumulate(np.append(self._newest, rows.time))
-        if self._lateness is None:
-            late = rows.time < newest[:-1]
-            if late.any():
-                raise self._error(rows, int(np.argmax(late)), float(newest[int(np.argmax(late))]))
-            self._newest = float(newest[-1])
-            return rows
+        late = rows.time < newest[:-1]
+        if late.any():
+            raise self._error(rows, int(np.argmax(late)), float(newest[int(np.argmax(late))]))
+        self._newest = float(newest[-1])
+        return rows
+
+    def _without_far(self, rows: ScanRows, lateness: float) -> ScanRows:
+        """Rows without those far ahead; one at the end that may be so waits for the next."""
+        if self._apart is not None:
+            rows = ScanRows.joined([self._apart, rows])
+        rises = np.diff(rows.time, prepend=self._before) > lateness + FAR_AHEAD
+        falls = np.diff(rows.time) < -lateness - FAR_AHEAD
+        kept = ~(rises & np.append(falls, True))
+        self._findings.ahead += int((~kept[:-1]).sum())
+        waits = int(not kept[-1])
+        self._apart = rows.take(slice(len(rows) - 1, None)) if waits else None
+        self._before = float(np.append(self._before, rows.time)[len(rows) - waits])
+        return rows.take(kept)
+
+    def _in_order(self, rows: ScanRows, lateness: float) -> ScanRows:
+        newest = np.maximum.accumulate(np.append(self._newest, rows.time))
         # What has been given on when a row comes: all up to the newest before it, less the time
         # that is allowed.
-        late = rows.time < newest[:-1] - self._lateness
+        late = rows.time < newest[:-1] - lateness
         self._findings.late += int(late.sum())
         self._newest = float(newest[-1])
         held = ScanRows.joined([*self._held, rows.take(~late)])
         held = held.take(np.argsort(held.time, kind="stable"))
-        ready = int(np.searchsorted(held.time, self._newest - self._lateness, side="right"))
+        ready = int(np.searchsorted(held.time, self._newest - lateness, side="right"))
         self._held = [held.take(slice(ready, len(held)))]
         return held.take(slice(0, ready))
 
     def finish(self) -> ScanRows | None:
         """Rows that are still held; None if there are none."""
-        held, self._held, self._newest = self._held, [], -math.inf
-        return held[0] if held and len(held[0]) else None
+        parts = self._held
+        if self._apart is not None and self._lateness is not None:
+            parts = [self._in_order(self._apart, self._lateness), *self._held]
+        self._held, self._apart, self._before, self._newest = [], None, -math.inf, -math.inf
+        rest = ScanRows.joined(parts) if parts else None
+        return rest if rest is not None and len(rest) else None
 
     def _error(self, rows: ScanRows, place: int, newest: float) -> DataError:
         clock = self._decoder.clock

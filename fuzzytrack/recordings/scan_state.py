@@ -34,7 +34,7 @@ class ScanState(RunState):
     """State of a live run of scans, see `RunState`: tracks, and plots whose scan has not ended."""
 
     format = "fuzzytrack scan state"
-    version = 1
+    version = 2
     run = "scan"
 
     @classmethod

@@ -248,7 +248,7 @@ def saved(tmp_path, change=lambda facts, arrays: None):
 
 def test_a_state_of_another_version_is_refused(tmp_path):
     path = saved(tmp_path, lambda facts, arrays: facts.update(version=7))
-    with pytest.raises(DataError, match="is of version 7, and this release reads 1"):
+    with pytest.raises(DataError, match="is of version 7, and this release reads 2"):
         LiveState.load(path)
 
 
