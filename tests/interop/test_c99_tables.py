@@ -208,6 +208,15 @@ def test_c_computes_what_was_measured_to_the_bit(name, number, tmp_path):
     np.testing.assert_array_equal(found, lookup_of(system.rules, number, rows))
 
 
+@compiled
+@pytest.mark.parametrize("number", list(TYPES))
+def test_c_of_three_inputs_computes_what_was_measured(number, tmp_path):
+    rules = partition_base(3)
+    rows = random_rows(rules, number, 2_000)
+    found = built(export_c(rules, number=number, random=100), tmp_path)(rows)
+    np.testing.assert_array_equal(found, lookup_of(rules, number, rows))
+
+
 def lookup_of(rules, number, rows):
     table = breakpoint_table(rules) or even_table(ft.FuzzySystem(rules), 65)
     defaults = {v.name: np.nan if v.default is None else v.default for v in rules.outputs}

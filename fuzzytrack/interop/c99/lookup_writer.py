@@ -134,8 +134,9 @@ class LookupWriter(ABC):
         """Lines for the first corner of the cell; the variable that holds its place."""
         lengths = [len(axis.nodes) for axis in self.lookup.axes]
         expression = indices[0]
-        for index, length in zip(indices[1:], lengths[1:], strict=True):
-            expression = f"({expression} * {length}U) + {index}"
+        for k, (index, length) in enumerate(zip(indices[1:], lengths[1:], strict=True)):
+            before = f"({expression})" if k else expression
+            expression = f"({before} * {length}U) + {index}"
             self.operations["multiplications"] += 1
             self.operations["additions"] += 1
         if len(indices) == 1:
