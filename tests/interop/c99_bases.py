@@ -54,7 +54,12 @@ def straight_bases(draw, defaults=(True, False)):
         {v.name: st.sampled_from([*v.set_names, None]) for v in inputs}
     )
     rows = draw(
-        st.lists(conditions, min_size=1, max_size=5, unique_by=lambda row: tuple(row.values()))
+        st.lists(
+            conditions,
+            min_size=1,
+            max_size=5,
+            unique_by=lambda row: tuple(sorted(row.items(), key=str)),
+        )
     )
     rules = []
     for row in rows:

@@ -12,6 +12,8 @@ from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.loading import shipped_rulebases
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.ramps import find_ramps
+from fuzzytrack.fuzzy.rulebase import Consequent
+from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.interop.c99.error_bound import error_bound
 from fuzzytrack.interop.c99.export import export_c
 from fuzzytrack.interop.c99.float_lookup import float_lookup
@@ -243,7 +245,8 @@ def test_c_of_any_rule_base_is_within_its_bound(tmp_path_factory, rules):
             bound = np.full(len(rows), made.figures["errors"][v.name]["bound"])
             if number == "q15" and v.name in (totals := breakpoint_table(rules).totals):
                 share = strengths(rules, totals[v.name], rows)
-                bound = np.maximum(bound, (1 + 2 * len(rules.inputs)) / np.maximum(share, 1e-9))
+                # An output that jumps is as steep as the strength is small.
+                bound = np.maximum(bound, len(rules.inputs) / np.maximum(share, 1e-9))
             assert (apart[:, k] <= bound).all()
 
 
@@ -252,6 +255,96 @@ def strengths(rules, total, rows):
     places = [q15_value(rows[:, k], v.universe) for k, v in enumerate(rules.inputs)]
     table = GridTable(breakpoint_table(rules).nodes, {"s": total}, {}, exact=True)
     return float_lookup(table, {}, np.float64)(np.stack(places, axis=1))["s"]
+
+
+def with_a_hole(n_inputs):
+    """Rules that leave two neighboring cells out: between them an output has its default."""
+    whole = partition_base(n_inputs)
+    (output,) = whole.outputs
+    silent = Variable("y", output.universe, output.sets, default=1.2)
+    holes = {("s2",) * n_inputs, (*("s2",) * (n_inputs - 1), "s3")}
+    kept = tuple(r for r in whole.rules if tuple(w for _, w in r.conditions) not in holes)
+    return type(whole)("holes", whole.inputs, (silent,), kept, whole.operators)
+
+
+def beside_the_hole(rules, random):
+    """Inputs of 16 bits within three steps of a node of every input."""
+    kind, nodes = number_type("q15"), breakpoint_table(rules).nodes
+    columns = [
+        random.choice(kind.given(axis, v.universe), 20_000) + random.integers(-3, 4, 20_000)
+        for axis, v in zip(nodes, rules.inputs, strict=True)
+    ]
+    return np.clip(np.stack(columns, axis=1), -32_768, 32_767)
+
+
+@pytest.mark.parametrize("n_inputs", [1, 2, 3])
+def test_integers_beside_a_hole_are_never_beyond_their_neighbors(n_inputs):
+    rules = with_a_hole(n_inputs)
+    universe = rules.outputs[0].universe
+    rows = beside_the_hole(rules, np.random.default_rng(6))
+    found = lookup_of(rules, "q15", rows)[:, 0]
+    table = breakpoint_table(rules)
+    fires = table.totals["y"] > 0
+    values = np.where(fires, table.moments["y"], np.nan) / np.where(fires, table.totals["y"], 1)
+    values = q15_place(values, universe)
+    places = [q15_value(rows[:, k], v.universe) for k, v in enumerate(rules.inputs)]
+    cells = [
+        np.clip(np.searchsorted(axis, x, "right") - 1, 0, len(axis) - 2)
+        for axis, x in zip(table.nodes, places, strict=True)
+    ]
+    corners = np.stack(
+        [values[tuple(c + s for c, s in zip(cells, step, strict=True))]
+         for step in np.ndindex(*[2] * n_inputs)]
+    )  # fmt: skip
+    low = np.fmin.reduce(corners, axis=0, initial=np.inf) - 2
+    high = np.fmax.reduce(corners, axis=0, initial=-np.inf) + 2
+    default = np.rint(q15_place(np.array(1.2), universe))
+    at_default = found == default
+    assert ((found >= low) & (found <= high) | at_default).all()
+    # The default is there where no rule fires, or a share is less than half of a part in 65,536.
+    strength = strengths(rules, table.totals["y"], rows)
+    assert (strength[at_default & ((found < low) | (found > high))] < 2.0**-16).all()
+    assert at_default[strength == 0].all()
+
+
+def test_a_single_input_beside_a_hole_errs_by_roundings_only():
+    figures = export_c(with_a_hole(1), number="q15").figures
+    assert figures["random_inputs"] == "all"
+    assert figures["errors"]["y"]["largest"] < 3.0
+
+
+@compiled
+@pytest.mark.parametrize("n_inputs", [2, 3])
+def test_c_beside_a_hole_computes_what_was_measured(n_inputs, tmp_path):
+    rules = with_a_hole(n_inputs)
+    made = export_c(rules, number="q15", random=100)
+    rows = np.concatenate(
+        [beside_the_hole(rules, np.random.default_rng(7)), random_rows(rules, "q15", 10_000)]
+    )
+    found = built(made, tmp_path)(rows)
+    np.testing.assert_array_equal(found, lookup_of(rules, "q15", rows))
+    assert made.figures["operations"] == operations(made.header)
+    assert "is never beyond its values at these corners" in " ".join(made.header.split("\n * "))
+
+
+def test_integers_that_cannot_tell_whether_a_rule_fires_are_refused():
+    shape = (2, 2, 2, 2)
+    universe = ft.load_rulebase("valve").inputs[0].universe
+    table = GridTable(
+        (np.array([universe.low, universe.high]),) * 4,
+        {"y": np.eye(16)[0].reshape(shape)}, {"y": np.eye(16)[0].reshape(shape)}, exact=True,
+    )  # fmt: skip
+    with pytest.raises(ValueError, match="number: there are inputs at which no rule about y fires"):
+        q15_lookup(table, (universe,) * 4, {"y": universe}, {"y": 0.0})
+    rules = with_a_hole(2)
+    faint = tuple(
+        type(r)(r.conditions, tuple(Consequent("y", c.set_name, 1e-6) for c in r.consequents))
+        if r is rules.rules[0] else r
+        for r in rules.rules
+    )  # fmt: skip
+    faint = type(rules)("faint", rules.inputs, rules.outputs, faint, rules.operators)
+    with pytest.raises(ValueError, match=r"number: at a break point rules about y fire at less"):
+        export_c(faint, number="q15", random=10)
 
 
 def exact_names():
@@ -305,7 +398,7 @@ def test_a_single_input_of_16_bits_is_tried_at_all_its_values():
 def operations(text):
     """Operators in the functions of a header, loops and calls of the helper counted as they run."""
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    helper = re.search(r"_between\([^)]*\)\n{(.*?)\n}", code, re.DOTALL)[1]
+    helpers = re.findall(r"(_between|_weighed)\([^)]*\)\n{(.*?)\n}", code, re.DOTALL)
     body = re.search(r"_infer\([^)]*\)\n{(.*)\n}", code, re.DOTALL)[1]
     body = re.sub(r"static const[^;]*;", "", body)
     counts = dict.fromkeys(
@@ -322,9 +415,8 @@ def operations(text):
             counts[kind] += times * len(re.findall(pattern, part))
 
     # Of a choice, one side is computed.
-    helper = helper.partition(" : ")[0]
-    calls = len(re.findall(r"_between\(", body))
-    count(helper, calls)
+    for name, helper in helpers:
+        count(helper.partition(" : ")[0], len(re.findall(rf"{name}\(", body)))
     for loop in re.findall(r"for \(.*?\n    }\n", body, re.DOTALL):
         turns = int(re.search(r"k < (\d+)U", loop)[1]) - 1
         body = body.replace(loop, "", 1)

@@ -18,7 +18,7 @@ class FloatWriter(LookupWriter):
         self.number = self.cell = names.c_type
         self.suffix = "f" if names.c_type == "float" else ""
 
-    def helper(self) -> list[str]:
+    def helpers(self) -> list[str]:
         """The function that interpolates between two nodes."""
         t = self.number
         return [
@@ -31,7 +31,7 @@ class FloatWriter(LookupWriter):
             "}",
         ]
 
-    def count_between(self) -> None:
+    def count_call(self, helper: str) -> None:
         """Count the operations of a call of it."""
         self.operations.update({"comparisons": 1, "additions": 2, "multiplications": 1})
 

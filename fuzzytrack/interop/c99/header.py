@@ -150,11 +150,9 @@ def about_bound(
     else:
         how = "the largest difference from fuzzytrack in double precision over all inputs"
     if silent and number.whole:
-        # Moments and totals err by 1/2 in the table and by 1 at each input; a quotient by both.
-        parts = 1 + 2 * len(names.inputs)
         how += (
-            f"; but up to {parts}/s steps where the total strength of the rules is s times its "
-            "largest value, near the inputs at which no rule fires"
+            "; where rules fire at some corners of a cell of the table only, and an output jumps, "
+            "it may err by more, but is never beyond its values at these corners"
         )
     yield "Error bound", f"{each}: {how}"
 

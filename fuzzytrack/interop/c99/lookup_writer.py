@@ -61,7 +61,7 @@ class LookupWriter(ABC):
             "",
             *self.names.structure_lines(),
             "",
-            *self.helper(),
+            *self.helpers(),
             "",
             f"/* {', '.join(self.names.outputs)} of {', '.join(self.names.inputs)}. */",
             self.names.declaration(),
@@ -152,8 +152,20 @@ class LookupWriter(ABC):
         order = order if down else ""
         return self.array(self.cell, name, list(values.ravel()), order, values.shape[-1])
 
-    def interpolation(self, table: str, place: str, shares: list[list[str]]) -> list[str]:
-        """An expression between the corners of a cell, over several lines."""
+    def interpolation(
+        self, table: str, place: str, shares: list[list[str]], helper: str = ""
+    ) -> list[str]:
+        """An expression between the corners of a cell, over several lines.
+
+        Parameters
+        ----------
+        table, place : str
+            The table, and the place of the first corner.
+        shares : list of list of str
+            For each input what a call of the helper gets after two values.
+        helper : str
+            Function between two values; `between` unless given.
+        """
         lengths = [len(axis.nodes) for axis in self.lookup.axes]
         strides = [math.prod(lengths[k + 1 :]) for k in range(len(lengths))]
         corners = []
@@ -163,21 +175,21 @@ class LookupWriter(ABC):
             self.operations["additions"] += bool(offset)
         for own in reversed(shares):
             corners = [
-                self._call([low, high, [", ".join(own)]])
+                self._call(helper or self.between, [low, high, [", ".join(own)]])
                 for low, high in zip(corners[::2], corners[1::2], strict=True)
             ]
         return corners[0]
 
-    def _call(self, arguments: list[list[str]]) -> list[str]:
-        """A call of the helper, in one line if it fits."""
-        self.count_between()
-        flat = f"{self.between}({', '.join(a[0] for a in arguments)})"
+    def _call(self, helper: str, arguments: list[list[str]]) -> list[str]:
+        """A call of a helper, in one line if it fits."""
+        self.count_call(helper)
+        flat = f"{helper}({', '.join(a[0] for a in arguments)})"
         if all(len(a) == 1 for a in arguments) and len(flat) < WIDTH - 12:
             return [flat]
         flat = f"    {', '.join(a[0] for a in arguments)})"
         if all(len(a) == 1 for a in arguments) and len(flat) < WIDTH - 16:
-            return [f"{self.between}(", flat]
-        lines = [f"{self.between}("]
+            return [f"{helper}(", flat]
+        lines = [f"{helper}("]
         for k, argument in enumerate(arguments):
             comma = "," if k < len(arguments) - 1 else ")"
             lines += [f"    {line}" for line in argument[:-1]]
@@ -190,12 +202,12 @@ class LookupWriter(ABC):
         self.body[-1] += ";"
 
     @abstractmethod
-    def helper(self) -> list[str]:
-        """The function that interpolates between two nodes."""
+    def helpers(self) -> list[str]:
+        """The functions between two nodes that were called."""
 
     @abstractmethod
-    def count_between(self) -> None:
-        """Count the operations of a call of it."""
+    def count_call(self, helper: str) -> None:
+        """Count the operations of a call of one of them."""
 
     @abstractmethod
     def axis(self, k: int, axis: Any) -> tuple[str, ...]:

@@ -2,6 +2,9 @@
 
 A number q of 16 bits stands for center + q/32768 · half of a universe. Nodes have eight bits more,
 since a break point of a set is seldom one of these numbers.
+
+Beside inputs at which no rule fires, both parts of a quotient are close to 0, so there they are
+weighed without rounding: the quotient then lies between those at the corners of its cell.
 """
 
 from __future__ import annotations
@@ -23,7 +26,11 @@ Integers = NDArray[np.uint64]
 
 #: Bits of a node beyond those of an input.
 EXTRA = 8
+#: Inputs with which a quotient is weighed without rounding: each needs 16 bits of 64.
+MOST_WEIGHED = 3
 _TOP = 65_536
+# A smaller total is rounding.
+_ROUNDING = 1e-9
 
 
 def q15_place(values: Array, universe: Universe) -> Array:
@@ -93,14 +100,22 @@ class Q15Lookup:
     def __repr__(self) -> str:
         return summary(self, "axes", "moments", "totals")
 
+    def is_silent(self, name: str) -> bool:
+        """Whether there are inputs at which no rule about an output fires."""
+        return name in self.totals and not self.totals[name].min() > 0
+
     def __call__(self, points: NDArray[np.int64]) -> dict[str, NDArray[np.int64]]:
         """Outputs at points, shape (n, n_inputs), as numbers of 16 bits."""
         shares = [axis.shares(points[:, k]) for k, axis in enumerate(self.axes)]
         result = {}
         for name, table in self.moments.items():
-            value = _interpolated(table, shares)
+            combine = _weighed if self.is_silent(name) else _interpolated
+            value = combine(table, shares)
             if name in self.totals:
-                total = _interpolated(self.totals[name], shares)
+                total = combine(self.totals[name], shares)
+                if self.is_silent(name) and len(shares) == MOST_WEIGHED:
+                    many = total >= np.uint64(1 << 47)
+                    value, total = (np.where(many, v >> np.uint64(16), v) for v in (value, total))
                 divisor = np.maximum(total, np.uint64(1))
                 quotient = ((value << np.uint64(16)) + (total >> np.uint64(1))) // divisor
                 value = np.where(
@@ -132,7 +147,8 @@ def q15_lookup(
     Raises
     ------
     ValueError
-        If two nodes are closer than a part in 2²⁴ of their universe.
+        If two nodes are closer than a part in 2²⁴ of their universe; or no rule fires somewhere,
+        and there are more than three inputs, or a node at which the rules hardly fire.
     """
     moments, totals = {}, {}
     for name, values in table.moments.items():
@@ -142,6 +158,7 @@ def q15_lookup(
             moment = (values - total * universe.low) / (universe.high - universe.low)
             # In a quotient a whole may be any number, as long as it is the same in both.
             moments[name], totals[name] = (_sixteen_bits(v, _TOP - 1) for v in (moment, total))
+            _check_totals(name, total, totals[name])
         else:
             moments[name] = _sixteen_bits(_part(values, universe))
     places = {
@@ -151,6 +168,23 @@ def q15_lookup(
     }
     axes = tuple(_axis(nodes, u) for nodes, u in zip(table.nodes, inputs, strict=True))
     return Q15Lookup(axes, moments, totals, {name: places.get(name, 0) for name in totals})
+
+
+def _check_totals(name: str, exact: Array, rounded: Integers) -> None:
+    """Raise ValueError where integers cannot tell whether a rule fires."""
+    if rounded.min() > 0:
+        return
+    if exact.ndim > MOST_WEIGHED:
+        raise ValueError(
+            f"number: there are inputs at which no rule about {name} fires, and of {exact.ndim} "
+            f"inputs; integers of 64 bits are enough for {MOST_WEIGHED}. Add rules, or use double "
+            "or float"
+        )
+    if ((exact > _ROUNDING) & (rounded == 0)).any():
+        raise ValueError(
+            f"number: at a break point rules about {name} fire at less than 1/131,070 of their "
+            "largest strength, which is 0 in integers of 16 bits; use double or float"
+        )
 
 
 def _part(values: Array, universe: Universe) -> Array:
@@ -179,12 +213,28 @@ def _axis(nodes: Array, universe: Universe) -> Q15Axis:
     return Q15Axis(places, rates, shift)
 
 
-def _interpolated(table: Integers, shares: list[tuple[NDArray[np.intp], Integers]]) -> Integers:
-    """Multilinear between the corners of each point's cell: the last input first."""
-    corners = [
+def _weighed(table: Integers, shares: list[tuple[NDArray[np.intp], Integers]]) -> Integers:
+    """As `_interpolated`, not rounded: 65536 times as large for each input."""
+    corners = _corners(table, shares)
+    for _, share in reversed(shares):
+        rest = np.uint64(_TOP) - share
+        corners = [
+            low * rest + high * share for low, high in zip(corners[::2], corners[1::2], strict=True)
+        ]
+    return corners[0]
+
+
+def _corners(table: Integers, shares: list[tuple[NDArray[np.intp], Integers]]) -> list[Integers]:
+    """Values at the corners of each point's cell, the last input changing fastest."""
+    return [
         table[tuple(shares[k][0] + step for k, step in enumerate(steps))]
         for steps in product((0, 1), repeat=len(shares))
     ]
+
+
+def _interpolated(table: Integers, shares: list[tuple[NDArray[np.intp], Integers]]) -> Integers:
+    """Multilinear between the corners of each point's cell: the last input first."""
+    corners = _corners(table, shares)
     half, bits = np.uint64(_TOP >> 1), np.uint64(16)
     for _, share in reversed(shares):
         rest = np.uint64(_TOP) - share
