@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.fuzzy.inference import strengths
+from fuzzytrack.fuzzy.inference import antecedents
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 
@@ -101,8 +101,8 @@ def find_hole(rules: RuleBase, output: str) -> Hole | None:
     which this is the same for all sets. A product of grades may be too small for a floating-point
     number; this is looked for where the largest grades are smallest.
     """
-    about = [rule for rule in rules.rules if _concludes(rule, output)]
-    conditions = _conditions(rules, about)
+    about = np.array([k for k, rule in enumerate(rules.rules) if _concludes(rule, output)])
+    conditions = antecedents(rules).of(about).term
     pieces = [
         _pieces(variable, np.unique(conditions[:, axis]))
         for axis, variable in enumerate(rules.inputs)
@@ -120,20 +120,6 @@ def find_hole(rules: RuleBase, output: str) -> Hole | None:
 
 def _concludes(rule: Rule, output: str) -> bool:
     return any(c.output == output and c.confidence > 0 for c in rule.consequents)
-
-
-def _conditions(rules: RuleBase, about: list[Rule]) -> NDArray[np.intp]:
-    """Index of the set needed of an input, -1 for any, shape (n_groups, n_inputs).
-
-    A row for each group of conditions by which a rule fires.
-    """
-    groups = [group for rule in about for group in rule.groups]
-    found = np.full((len(groups), len(rules.inputs)), -1, dtype=np.intp)
-    for row, group in enumerate(groups):
-        for name, term in group:
-            axis = rules.input_names.index(name)
-            found[row, axis] = rules.inputs[axis].index(term)
-    return found
 
 
 # ---------------------------------------------------------------- pieces of an input
@@ -235,9 +221,9 @@ def _widened(
 # ---------------------------------------------------------------- underflow
 
 
-def _underflow(rules: RuleBase, about: list[Rule], output: str) -> Hole | None:
+def _underflow(rules: RuleBase, about: NDArray[np.intp], output: str) -> Hole | None:
     """A point at which the strength of every rule about an output is lost, though none is 0."""
-    used = {condition for rule in about for group in rule.groups for condition in group}
+    used = {condition for k in about for group in rules.rules[k].groups for condition in group}
     tailed = any(
         fuzzy_set.is_tailed
         for variable in rules.inputs
@@ -246,11 +232,11 @@ def _underflow(rules: RuleBase, about: list[Rule], output: str) -> Hole | None:
     )
     if not tailed or rules.operators.conjunction == "min":
         return None
-    numbers = [k for k, rule in enumerate(rules.rules) if _concludes(rule, output)]
+    conditions = antecedents(rules).of(about)
     axes = [_faintest(variable, used) for variable in rules.inputs]
     for points in _in_blocks(axes):
-        grades = {v.name: v.memberships(points[:, k]) for k, v in enumerate(rules.inputs)}
-        strongest = strengths(rules, grades)[:, numbers].max(axis=1)
+        grades = [v.memberships(points[:, k]) for k, v in enumerate(rules.inputs)]
+        strongest = conditions.strengths(grades).max(axis=1)
         faint = np.flatnonzero(strongest < _FAINT)
         if len(faint):
             place = points[faint[np.argmin(strongest[faint])]].tolist()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
@@ -11,11 +12,19 @@ from numpy.typing import NDArray
 from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.norms import S_NORMS, T_NORMS
 from fuzzytrack.fuzzy.operators import Operators
-from fuzzytrack.fuzzy.rulebase import Conditions, RuleBase
+from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Universe, Variable
 from fuzzytrack.reprs import summary
 
-__all__ = ["Conclusions", "conclusions", "conjoin", "disjoin", "output_grid", "strengths"]
+__all__ = [
+    "Antecedents",
+    "Conclusions",
+    "antecedents",
+    "conclusions",
+    "conjoin",
+    "disjoin",
+    "output_grid",
+]
 
 
 #: Distance from a grid point, in steps of the grid, up to which a place is on it.
@@ -91,26 +100,42 @@ class Conclusions:
     def __repr__(self) -> str:
         return summary(self, "operators", "grades")
 
+    def of(self, rules: NDArray[np.intp]) -> Conclusions:
+        """Those of some rules alone, given by ascending indices."""
+        rows, rule = _among(self.rule, rules)
+        return replace(self, rule=rule, term=self.term[rows], confidence=self.confidence[rows])
+
     def infer(self, strength: Array) -> Array:
         """Fuzzy output, shape (n, n_grid), from rule strengths, shape (n, n_rules)."""
         operators = self.operators
-        called = T_NORMS[operators.weighing].values(strength[:, self.rule], self.confidence)
         imply = T_NORMS[operators.implying].values
         if operators.disjunction == "sum" and operators.implying == "product":
-            chosen = np.zeros((len(self.term), len(self.grades)))
-            chosen[np.arange(len(self.term)), self.term] = 1.0
-            return np.asarray((called @ chosen) @ self.grades)
+            terms, levels = self._levels(strength, np.add)
+            return np.asarray(levels.T @ self.grades[terms])
         fuzzy = np.zeros((len(strength), len(self.y)))
         if operators.disjunction == "max":
-            for term in np.unique(self.term):
-                level = called[:, self.term == term].max(axis=1)
+            for term, level in zip(*self._levels(strength, np.maximum), strict=True):
                 np.maximum(fuzzy, imply(level[:, None], self.grades[term]), out=fuzzy)
             return fuzzy
         # The sum of clipped sets does not regroup by set: join rule by rule.
         join = S_NORMS[operators.disjunction].values
-        for column, term in enumerate(self.term):
-            fuzzy = join(fuzzy, imply(called[:, column, None], self.grades[term]))
+        called = self._called(strength, np.arange(len(self.term)))
+        for row, term in zip(called, self.term, strict=True):
+            fuzzy = join(fuzzy, imply(row[:, None], self.grades[term]))
         return fuzzy
+
+    def _called(self, strength: Array, consequents: NDArray[np.intp]) -> Array:
+        """How strongly some of the consequents are concluded, shape (n_consequents, n)."""
+        confidence = self.confidence[consequents, None]
+        weigh = T_NORMS[self.operators.weighing].values
+        return weigh(strength.T[self.rule[consequents]], confidence)
+
+    def _levels(self, strength: Array, join: np.ufunc) -> tuple[NDArray[np.intp], Array]:
+        """Sets that are concluded, and how strongly each is by all rules, shape (n_terms, n)."""
+        order = np.argsort(self.term, kind="stable")
+        terms, starts = np.unique(self.term[order], return_index=True)
+        # No matrix product, which would be one of many small ones, each on all processors.
+        return terms, join.reduceat(self._called(strength, order), starts, axis=0)
 
 
 def conclusions(rulebase: RuleBase, output: Variable) -> Conclusions:
@@ -127,30 +152,91 @@ def conclusions(rulebase: RuleBase, output: Variable) -> Conclusions:
     return Conclusions(operators, np.array(rule), np.array(term), np.array(confidence), y, grades)
 
 
-def strengths(
-    rulebase: RuleBase, grades: dict[str, Array], whole: dict[str, Array] | None = None
-) -> Array:
-    """Evaluate the firing strength of every rule (Eq. 3.4).
+@dataclass(frozen=True)
+class Antecedents:
+    """Conditions of rules as arrays, with a row for each group of conditions by which a rule fires.
 
-    Parameters
+    Attributes
     ----------
-    rulebase : RuleBase
-    grades : dict of ndarray
-        For each input, the grades of its sets, shape (n_sets, n).
-    whole : dict of ndarray, optional
-        For each input, its grade of the whole universe, shape (n,): the grade of a fuzzy input in a
-        rule that does not name it. One unless given.
-
-    Returns
-    -------
-    ndarray, shape (n, n_rules)
+    operators : Operators
+    rule : ndarray of int, shape (n_groups,)
+        Index of the rule, ascending.
+    term : ndarray of int, shape (n_groups, n_inputs)
+        Index of the set that is needed of each input, -1 where any value will do.
     """
 
-    def strength(conditions: Conditions) -> Array:
-        members = [grades[name][rulebase.input(name).index(term)] for name, term in conditions]
-        named = dict(conditions)
-        members += [grade for name, grade in (whole or {}).items() if name not in named]
-        return reduce(T_NORMS[rulebase.operators.conjunction].values, members)
+    operators: Operators
+    rule: NDArray[np.intp]
+    term: NDArray[np.intp]
 
-    either = S_NORMS[rulebase.operators.alternatives].values
-    return np.stack([reduce(either, map(strength, r.groups)) for r in rulebase.rules]).T
+    def __repr__(self) -> str:
+        return summary(self, "operators", "term")
+
+    def firing(self, grades: Sequence[Array]) -> NDArray[np.intp]:
+        """Rules with a strength above 0 at one of some points at least, as ascending indices.
+
+        Parameters
+        ----------
+        grades : sequence of ndarray
+            For each input the grades of its sets, shape (n_sets, n).
+        """
+        met = np.ones(len(self.rule), dtype=bool)
+        for of_input, term in zip(grades, self.term.T, strict=True):
+            met &= np.append(of_input.any(axis=1), True)[term]
+        return np.unique(self.rule[met])
+
+    def of(self, rules: NDArray[np.intp]) -> Antecedents:
+        """Those of some rules alone, given by ascending indices."""
+        rows, rule = _among(self.rule, rules)
+        return Antecedents(self.operators, rule, self.term[rows])
+
+    def strengths(self, grades: Sequence[Array], whole: Sequence[Array] | None = None) -> Array:
+        """Firing strength of every rule (Llinas et al. 1998, Eq. 3.4), shape (n, n_rules).
+
+        Parameters
+        ----------
+        grades : sequence of ndarray
+            For each input the grades of its sets, shape (n_sets, n).
+        whole : sequence of ndarray, optional
+            For each input its grade of the whole universe, shape (n,): the grade of a fuzzy input
+            in a rule that does not name it. One unless given.
+        """
+        both = T_NORMS[self.operators.conjunction].values
+        either = S_NORMS[self.operators.alternatives].values
+        anything = [np.ones(g.shape[1]) for g in grades] if whole is None else whole
+        members = (
+            # The last row is that of the index -1.
+            np.concatenate([of_input, all_of_it[None]])[term]
+            for of_input, all_of_it, term in zip(grades, anything, self.term.T, strict=True)
+        )
+        groups = reduce(both, members)
+        _, firsts, counts = np.unique(self.rule, return_index=True, return_counts=True)
+        found = groups if len(firsts) == len(groups) else groups[firsts]
+        for further in range(1, max(counts, default=0)):
+            more = counts > further
+            found[more] = either(found[more], groups[firsts[more] + further])
+        return np.asarray(found.T)
+
+
+def antecedents(rulebase: RuleBase) -> Antecedents:
+    """Collect the conditions of the rules."""
+    places = {
+        (variable.name, name): (axis, term)
+        for axis, variable in enumerate(rulebase.inputs)
+        for term, name in enumerate(variable.set_names)
+    }
+    groups = [(k, group) for k, rule in enumerate(rulebase.rules) for group in rule.groups]
+    term = np.full((len(groups), len(rulebase.inputs)), -1, dtype=np.intp)
+    for row, (_, group) in enumerate(groups):
+        for condition in group:
+            axis, index = places[condition]
+            term[row, axis] = index
+    return Antecedents(rulebase.operators, np.array([k for k, _ in groups]), term)
+
+
+def _among(
+    rule: NDArray[np.intp], rules: NDArray[np.intp]
+) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
+    """Which rows are about one of some rules, and the place of the rule among these."""
+    rows = np.isin(rule, rules)
+    return rows, np.searchsorted(rules, rule[rows])

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import NoRuleFiresWarning
 from fuzzytrack.fuzzy.defuzzification import defuzzify
 from fuzzytrack.fuzzy.fuzzification import Fuzzification
-from fuzzytrack.fuzzy.inference import Conclusions, conclusions, disjoin, output_grid, strengths
-from fuzzytrack.fuzzy.inference import conjoin as _conjoin
+from fuzzytrack.fuzzy.inference import (
+    Antecedents,
+    Conclusions,
+    antecedents,
+    conclusions,
+    conjoin,
+    disjoin,
+    output_grid,
+)
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.relation import compose, relation
 from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
@@ -32,8 +39,10 @@ __all__ = ["METHODS", "FiredRule", "FuzzySystem", "Surface"]
 
 
 METHODS = ("exact", "relation", "table")
-# Points at a time: the arrays of one chunk stay in the processor cache.
+# Points at a time, and strengths of rules that fire at one of them, at a time: the arrays of one
+# chunk stay in the processor cache.
 _CHUNK = 4_096
+_MOST_STRENGTHS = 262_144
 
 
 @dataclass(frozen=True)
@@ -258,11 +267,27 @@ class FuzzySystem:
                 )
 
     def _evaluate_exact(self, points: Array) -> dict[str, Array]:
-        strength = self.strengths(points)
-        return {
-            name: self._crisp(name, self._conclusions[name].infer(strength), points)
-            for name in self.rules.output_names
-        }
+        result = {name: np.empty(len(points)) for name in self.rules.output_names}
+        for part, firing, strength in self._strengths_in_parts(points):
+            for name, found in self._conclusions.items():
+                fuzzy = found.of(firing).infer(strength)
+                result[name][part] = self._crisp(name, fuzzy, points[part])
+        return result
+
+    def _strengths_in_parts(self, points: Array) -> Iterator[tuple[slice, NDArray[np.intp], Array]]:
+        """Parts of the points, the rules that fire in each, and their strengths there."""
+        for start in range(0, len(points), _CHUNK):
+            grades, whole = self._grades(points[start : start + _CHUNK])
+            firing = self._antecedents.firing(grades)
+            conditions = self._antecedents.of(firing)
+            count = grades[0].shape[1]
+            rows = max(1, _MOST_STRENGTHS // max(1, len(firing)))
+            for first in range(0, count, rows):
+                part = slice(first, min(first + rows, count))
+                strength = conditions.strengths(
+                    [g[:, part] for g in grades], whole and [w[part] for w in whole]
+                )
+                yield slice(start + part.start, start + part.stop), firing, strength
 
     def _evaluate_relation(self, points: Array) -> dict[str, Array]:
         inputs = self.rules.inputs
@@ -308,20 +333,30 @@ class FuzzySystem:
 
     def strengths(self, points: Array) -> Array:
         """Evaluate the strength of every rule: (n, n_rules) from points of (n, n_inputs)."""
-        grades, whole = {}, {}
-        for k, variable in enumerate(self.rules.inputs):
-            x = variable.universe.clip(points[:, k])
-            if self.fuzzification.is_singleton:
-                grades[variable.name] = variable.memberships(x)
-                continue
+        return self._antecedents.strengths(*self._grades(points))
+
+    def _grades(self, points: Array) -> tuple[list[Array], list[Array] | None]:
+        """For each input, grades of its sets, and of its whole universe if inputs are fuzzy."""
+        variables = self.rules.inputs
+        x = [v.universe.clip(points[:, k]) for k, v in enumerate(variables)]
+        if self.fuzzification.is_singleton:
+            return [v.memberships(at) for v, at in zip(variables, x, strict=True)], None
+        grades, whole = [], []
+        operators = self.rules.operators
+        for variable, at in zip(variables, x, strict=True):
             # sup or sum over x of μ_A'(x) and μ_A(x): the composition, one input at a time
-            spread = self.fuzzification.membership(variable, x)
-            met = _conjoin(
-                self.rules.operators, variable.memberships()[:, None, :], spread[None, :, :]
-            )
-            grades[variable.name] = disjoin(self.rules.operators, met, -1)
-            whole[variable.name] = disjoin(self.rules.operators, spread, -1)
-        return strengths(self.rules, grades, whole)
+            spread = self.fuzzification.membership(variable, at)
+            met = conjoin(operators, variable.memberships()[:, None, :], spread[None, :, :])
+            grades.append(disjoin(operators, met, -1))
+            whole.append(disjoin(operators, spread, -1))
+        return grades, whole
+
+    def is_silent(self, points: Array) -> NDArray[np.bool_]:
+        """Whether no rule fires, at points of shape (n, n_inputs): shape (n,)."""
+        silent = np.ones(len(points), dtype=bool)
+        for part, _, strength in self._strengths_in_parts(points):
+            silent[part] = ~(strength != 0).any(axis=1)
+        return silent
 
     def underflows(self, output: str, point: Array) -> bool:
         """Whether rules about an output have strengths above 0 at a point that are lost in floats.
@@ -381,6 +416,10 @@ class FuzzySystem:
         return sorted(fired, key=lambda f: (-f.strength, f.number))
 
     # ---------------------------------------------------------------- data
+
+    @cached_property
+    def _antecedents(self) -> Antecedents:
+        return antecedents(self.rules)
 
     @cached_property
     def _conclusions(self) -> dict[str, Conclusions]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -19,6 +20,8 @@ MAX_NODES = 4_000_000
 # With three, a kink is met at 3/4 of its height or more on each axis: twice the largest difference
 # covers it on two axes.
 PROBES_PER_CELL = 3
+#: Probes to a net at the most.
+_NET = 4_096
 #: How far beside a jump its sides are probed, as a part of the universe; and most inputs of rule
 #: bases whose jumps are all probed.
 _BESIDE = 1e-9
@@ -123,22 +126,23 @@ def _knots(variable: Variable) -> Array:
     return np.unique(np.clip(found, low, high))
 
 
-def _probes(axes: tuple[Array, ...], knots: list[Array]) -> list[Array]:
+def _probes(axes: tuple[Array, ...], knots: list[Array]) -> Iterator[Array]:
     """Nets of points inside the cells and at `knots`, some thousand points to a net at the most.
 
     Of each axis up to so many points are taken that there are 1,000,000 inside the cells in all,
-    and with three inputs or more as many knots.
+    and with three inputs or more as many knots. A net is small on every axis, so that few rules
+    fire on it.
     """
     inside = (np.arange(PROBES_PER_CELL) + 0.5) / PROBES_PER_CELL
     limit = max(2, int(1_000_000 ** (1 / len(axes))))
+    length = max(2, int(_NET ** (1 / len(axes))))
     fine = []
     for axis, own in zip(axes, knots, strict=True):
         dense = _thinned((axis[:-1, None] + inside * (axis[1] - axis[0])).ravel(), limit)
         kept = own if len(axes) <= _ALL_KNOTS else _thinned(own, max(2, limit // 4))
-        fine.append(np.union1d(dense, kept))
-    first, rest = fine[0], fine[1:]
-    rows = max(1, 65_536 // max(1, int(np.prod([len(r) for r in rest], dtype=float))))
-    return [_net((first[i : i + rows], *rest)) for i in range(0, len(first), rows)]
+        points = np.union1d(dense, kept)
+        fine.append([points[i : i + length] for i in range(0, len(points), length)])
+    return map(_net, product(*fine))
 
 
 def _thinned(points: Array, limit: int) -> Array:

@@ -231,7 +231,13 @@ class Variable:
     def memberships(self, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Grades of every set, shape ``(n_sets, *x.shape)``; on the universe's grid without `x`."""
         points = self.universe.values if x is None else x
-        grades = np.stack([s.membership(points) for s in self.sets])
+        least, most = np.min(points, initial=np.inf), np.max(points, initial=-np.inf)
+        grades = np.zeros((len(self.sets), *np.shape(points)))
+        for row, fuzzy_set in enumerate(self.sets):
+            low, high, _, _ = fuzzy_set.support()
+            # Not so where a point is NaN.
+            if not (most < low or high < least):
+                grades[row] = fuzzy_set.membership(points)
         if x is None:
             for row, fuzzy_set in enumerate(self.sets):
                 if fuzzy_set.shape == "singleton":

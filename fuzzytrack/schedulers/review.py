@@ -169,7 +169,7 @@ def review(rules: RuleBase | str | os.PathLike[str]) -> Review:
     return Review(
         rules=rules,
         written=_written(rules),
-        silent=float((system.strengths(grid).max(axis=1) == 0).mean()),
+        silent=float(system.is_silent(grid).mean()),
         holes=holes,
         ranges={name: _ends(v) for name, v in {**reached, **gains_of(reached)}.items()},
         symmetry=_symmetry(system, grid, values),

@@ -87,6 +87,47 @@ def test_weighted_centers_are_the_weights_of_eq_3_13(conjunction, disjunction):
         np.testing.assert_allclose(answer[output.name], weighted / total, rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("algebra", ALGEBRAS)
+@pytest.mark.parametrize("shape", ["trimf", "gaussmf"])
+def test_many_rules_at_many_points_are_those_at_one_point_after_another(algebra, shape):
+    def sets(names, low, high):
+        peaks = whole_triangles(names, low, high)
+        if shape == "trimf":
+            return peaks
+        step = (high - low) / len(names)
+        return tuple(FuzzySet(s.name, "gaussmf", (s.parameters[1], step)) for s in peaks)
+
+    names = [f"s{k}" for k in range(9)]
+    e = Variable("e", Universe(-1, 1, 41), sets(names, -1.0, 1.0))
+    d = Variable("d", Universe(-2, 3, 41), sets(names, -2.0, 3.0))
+    output = Variable("out", Universe(0, 1, 51), triangles(FOUR, (0.0, 0.2, 0.5, 1.0)))
+    table = np.random.default_rng(6).integers(0, 4, (9, 9))
+    base = table_base(table, e, d, output, Operators(*algebra))
+    points = np.stack(list(random_points(base, 5_000).values()), axis=1)
+    system = FuzzySystem(base)
+    answer, silent = system.evaluate(points)["out"], system.is_silent(points)
+    infer = infer_function(system)
+    for row in [0, 4_095, 4_096, *range(7, 5_000, 211)]:
+        assert answer[row] == pytest.approx(infer(tuple(points[row].tolist()))[0], rel=0, abs=1e-12)
+        assert not silent[row]
+
+
+def test_points_at_which_no_rule_fires_are_silent():
+    base = asymmetric_base()
+    without = replace(base, rules=base.rules[1:49], layout=None)
+    points = np.stack(list(random_points(base, 5_000).values()), axis=1)
+    first = dict(base.rules[0].conditions)
+    others = [
+        grades[[k for k, name in enumerate(v.set_names) if name != first[v.name]]].max(axis=0)
+        for v, x in zip(base.inputs, points.T, strict=True)
+        for grades in [v.memberships(x)]
+    ]
+    # Where no other set of either input is above 0, only the first rule would fire.
+    alone = np.maximum(*others) == 0
+    assert alone.any()
+    np.testing.assert_array_equal(FuzzySystem(without).is_silent(points), alone)
+
+
 def test_identity_of_centroid_and_weights():
     """y = Σ μᵢ cᵢⱼ Aⱼ ȳⱼ / Σ μᵢ cᵢⱼ Aⱼ for product, sum and centroid, whatever the sets."""
     base = asymmetric_base()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fuzzytrack.fuzzy.inference import conclusions, strengths
+from fuzzytrack.fuzzy.inference import antecedents, conclusions
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.reprs import summary
 
@@ -56,10 +56,8 @@ def columns(rules: RuleBase) -> Columns:
         raise ValueError(f"rules: {rules.name} must have 2 inputs, it has {len(rules.inputs)}")
     grids = [v.universe.values for v in rules.inputs]
     cells = [g.ravel() for g in np.meshgrid(*map(np.arange, map(len, grids)), indexing="ij")]
-    grades = {
-        v.name: v.memberships()[:, places] for v, places in zip(rules.inputs, cells, strict=True)
-    }
-    strength = strengths(rules, grades)
+    grades = [v.memberships()[:, places] for v, places in zip(rules.inputs, cells, strict=True)]
+    strength = antecedents(rules).strengths(grades)
     levels, centers = [], []
     for output in rules.outputs:
         about = conclusions(rules, output)
