@@ -14,6 +14,7 @@ from fuzzytrack.studio.handlers import Handler, Later
 from fuzzytrack.studio.limits import MOST_RUNS
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.reading_arguments import READING, reading_options
+from fuzzytrack.studio.run_jobs import Run
 from fuzzytrack.studio.snippets import (
     PageTexts,
     RunSnippet,
@@ -56,27 +57,36 @@ def snippet(page: Page, given: Arguments) -> Answer:
     return {"text": page.studio.command(*shown.command())}
 
 
-def _texts(page: Page) -> PageTexts:
+def _texts(page: Page, run: Run | None = None) -> PageTexts:
+    """Texts of the page as they are, or those that a run was made of."""
     session = page.session
-    texts = session.texts
+    texts, saved = session.texts, session.saved_text("rules")
+    if run is not None:
+        texts, saved = run.texts, run.saved
+
+    def named(kind: str, name: str, text: str | None) -> str:
+        """The name, if it still stands for the text."""
+        return name if text is not None and session.saved_text(kind, name) == text else ""
+
     return PageTexts(
-        rules=texts.rules.name if session.is_saved("rules") else "",
+        rules=named("rules", texts.rules.name, texts.rules.text),
         rules_text=texts.rules.text,
-        scenario=texts.scenario.name if session.is_saved("scenario") else "",
+        scenario=named("scenario", texts.scenario.name, texts.scenario.text),
         scenario_text=texts.scenario.text,
-        saved=texts.rules.name if session.saved_text("rules") is not None else "",
+        saved=named("rules", texts.rules.name, saved),
+        saved_text=saved or "",
     )
 
 
 def _run(page: Page, given: Arguments) -> Snippet:
+    """The last run with its own texts; another one with those of the page."""
     run = page.run
     usual = page.session.reading.scenario.trackers if run is None else list(run.trackers)
-    return RunSnippet(
-        _texts(page),
-        trackers=given.texts("trackers", list(usual or [EDITOR])),
-        runs=given.whole("runs", 1, MOST_RUNS, _RUNS if run is None else run.runs),
-        seed=given.whole("seed", 0, 2**53, 0 if run is None else run.seed),
-    )
+    trackers = given.texts("trackers", list(usual or [EDITOR]))
+    runs = given.whole("runs", 1, MOST_RUNS, _RUNS if run is None else run.runs)
+    seed = given.whole("seed", 0, 2**53, 0 if run is None else run.seed)
+    is_last = run is not None and (list(run.trackers), run.runs, run.seed) == (trackers, runs, seed)
+    return RunSnippet(_texts(page, run if is_last else None), trackers, runs, seed)
 
 
 def _track(page: Page, given: Arguments) -> Snippet:

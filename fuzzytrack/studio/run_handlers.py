@@ -36,9 +36,10 @@ def run(page: Page, given: Arguments) -> Later:
     page.session.check_loads("scenario")
     scenario = page.session.reading.scenario
     make = trackers_of(page, texts)
+    made_of, saved = page.session.texts, page.session.saved_text("rules")
 
     def work() -> Answer:
-        started = Run(scenario, make(), runs, seed)
+        started = Run(scenario, make(), runs, seed, made_of, saved)
         started.check()
         page.studio.make_room_for(started, page)
         job = page.start("run", runs, run_work(started))

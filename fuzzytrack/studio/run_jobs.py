@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fuzzytrack.simulation.scenario import Scenario
+from fuzzytrack.studio.history import Texts
 from fuzzytrack.studio.jobs import Job, Work
 from fuzzytrack.studio.limits import check_runs_fit, run_bytes
 from fuzzytrack.studio.notes import by_name
@@ -32,6 +33,10 @@ class Run:
     scenario : Scenario
     trackers : dict of str to Tracker
     runs, seed : int
+    texts : Texts
+        What it was made of.
+    saved : str or None
+        The rule base as it was saved last at that time.
     results : Results or None
         When it is done.
     """
@@ -40,6 +45,8 @@ class Run:
     trackers: dict[str, Tracker]
     runs: int
     seed: int
+    texts: Texts
+    saved: str | None
     results: Results | None = None
 
     @property

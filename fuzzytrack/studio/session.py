@@ -266,9 +266,16 @@ class Session:
         open_text = self._open_text(kind)
         return self.saved_text(kind) == open_text.text
 
-    def saved_text(self, kind: str) -> str | None:
-        """Text as it was last saved or opened; None if it never was."""
-        return self._text_as_saved(kind, self._open_text(kind).name)
+    def saved_text(self, kind: str, name: str | None = None) -> str | None:
+        """Text as it was last saved or opened; None if it never was.
+
+        Parameters
+        ----------
+        kind : {"rules", "scenario"}
+        name : str, optional
+            Of what is shipped, or of a file; what is open unless given.
+        """
+        return self._text_as_saved(kind, self._open_text(kind).name if name is None else name)
 
     def autosave(self) -> bool:
         """Write a draft of both texts while one is not saved, and remove it when both are.

@@ -26,7 +26,10 @@ class PageTexts:
         Name of what is shipped, or of a file; empty if the text differs from that.
     rules_text, scenario_text : str
     saved : str
-        Name of the rule base as it was last saved or opened; empty if it never was.
+        Name of the rule base as it was last saved or opened; empty if it never was, or if the file
+        has been saved anew since.
+    saved_text : str
+        That rule base.
     """
 
     rules: str
@@ -34,6 +37,7 @@ class PageTexts:
     scenario: str
     scenario_text: str
     saved: str
+    saved_text: str
 
     def named(self, tracker: str) -> str | None:
         """A tracker as a script names it; None if it is a rule base that has no name."""
@@ -53,7 +57,9 @@ class PageTexts:
         """
         found = self.named(tracker)
         if found is None:
-            raise ValueError("what: save the rule base first; a command names its file")
+            raise ValueError(
+                "what: save the rule base first, before it is run; a command names its file"
+            )
         return found
 
     def all_typed(self, trackers: Sequence[str]) -> list[str]:
@@ -76,7 +82,9 @@ class PageTexts:
             If it has not been saved.
         """
         if not self.scenario:
-            raise ValueError("what: save the scenario first; a command names its file")
+            raise ValueError(
+                "what: save the scenario first, before it is run; a command names its file"
+            )
         return self.scenario
 
 
@@ -110,11 +118,14 @@ class Script:
         self.add(f"scenario = loads_scenario({_literal(self._texts.scenario_text)})")
         return "scenario"
 
-    def rules(self) -> str:
-        """Expression for the rule base of the editor, which has no name."""
+    def rules(self, tracker: str) -> str:
+        """Expression for the rule base of a tracker, which has no name."""
+        is_saved = specs.split(tracker, "tracker")[0] == SAVED
+        name = "saved" if is_saved else "rules"
+        text = self._texts.saved_text if is_saved else self._texts.rules_text
         self.imports("fuzzytrack.fuzzy.loading", "loads_rulebase")
-        self.add(f"rules = loads_rulebase({_literal(self._texts.rules_text)})")
-        return "rules"
+        self.add(f"{name} = loads_rulebase({_literal(text)})")
+        return name
 
     def trackers(self, texts: Sequence[str]) -> str:
         """Expression for some trackers."""
@@ -128,7 +139,7 @@ class Script:
         if named is not None:
             return repr(named)
         self.imports("fuzzytrack.trackers.catalog", "tracker_of_rules")
-        return f"tracker_of_rules({self.rules()}, {specs.split(text, 'tracker')[1]!r})"
+        return f"tracker_of_rules({self.rules(text)}, {specs.split(text, 'tracker')[1]!r})"
 
     def __str__(self) -> str:
         return "\n".join([*sorted(self._imports), "", *self._lines, ""])
@@ -221,7 +232,7 @@ class TuneSnippet(Snippet):
         script.imports("fuzzytrack.tuning.tuner", "tune")
         data = script.scenario() if self.on is None else repr(self.on)
         named = self.texts.named(self.tracker)
-        tracker = script.rules() if named is None else repr(named)
+        tracker = script.rules(self.tracker) if named is None else repr(named)
         given = "".join(f", {k}={v!r}" for k, v in _python_options(self.options).items())
         script.add(f"tuned = tune({data}, {tracker}{given})")
         script.add("print(tuned.report)")

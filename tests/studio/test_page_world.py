@@ -267,3 +267,19 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv
     studio.get_by_role("dialog").get_by_text("omega-schedule").click()
     view(studio, "Run")
     expect(studio.locator("#pane-run")).to_contain_text("editor: omega-schedule")
+
+
+def test_notes_of_a_walk_are_beside_it(studio):
+    view(studio, "World")
+    studio.get_by_label("Intervals").select_option("burst")
+    view(studio, "Run")
+    notes = studio.locator(".results-walk").get_by_role("list", name="Notes")
+    with warnings_to_notes():
+        studio.get_by_role("button", name="One run").click()
+        studio.get_by_role("combobox", name="Tracker", exact=True).select_option("editor")
+        expect(notes).to_contain_text("editor: its gains do not suit times")
+        expect(notes.get_by_role("listitem")).to_have_count(1)
+        # At equal times the gains are right, and nothing is to be said.
+        studio.keyboard.press("Control+z")
+        expect(notes).not_to_be_visible()
+        expect(studio.get_by_role("slider", name="Scan")).to_be_visible()

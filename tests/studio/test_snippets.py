@@ -84,3 +84,33 @@ def test_scripts_of_recordings_are_python(page, of):
     compile(text, of, "exec")
     assert "'a.csv'" in text
     assert "sigma=2.0" in text
+
+
+def test_the_script_of_a_run_is_of_its_own_texts(page, server, monkeypatch):
+    monkeypatch.setattr(server.studio(), "command", command_line)
+    page.ask("set_cell", row=0, column=1, text="S-S")
+    page.ask("set_sensors", sigma=70)
+    page.ask("save", name="ran.yaml")
+    page.ask("set_cell", row=0, column=1, text="L-Z")
+    arguments = {"trackers": ["editor", "saved"], "runs": 3, "seed": 5}
+    last = page.job(page.ask("run", **arguments)["job"])[-1]
+    rows = [
+        [row["name"], str(row["predicted_rmse"]), str(row["predicted_rmse_se"])]
+        for row in last["results"]["trackers"]
+    ]
+    assert rows[0][1] != rows[1][1]
+    page.ask("set_sensors", sigma=20)
+    page.ask("set_cell", row=2, column=2, text="S-Z")
+    # The file is named while it has the rules as they were saved, and only then.
+    kept = page.ask("snippet", what="python", **arguments)["text"]
+    assert "'saved': 'ran.yaml'" in kept
+    page.ask("save", name="ran.yaml")
+    text = page.ask("snippet", what="python", **arguments)["text"]
+    assert "'ran.yaml'" not in text
+    assert run_script(text) == rows
+    message = page.refused("snippet", what="command", **arguments)
+    assert "save the rule base first, before it is run" in message
+    # Of other runs, and of other numbers, it is what a run would now be.
+    text = page.ask("snippet", what="python", **arguments | {"seed": 6})["text"]
+    assert "'editor': 'ran.yaml'" in text
+    assert "sigma: 20" in text
