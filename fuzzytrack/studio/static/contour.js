@@ -8,7 +8,7 @@ import { pictureMenu } from "./pictures.js";
 import { signOf } from "./rulebase.js";
 import { shapeOf } from "./shapes.js";
 import { makeStage } from "./stage.js";
-import { nameOf, paletteOf, rangeOf, spotOf } from "./surface.js";
+import { nameOf, paletteOf, rangeOf, spotOf } from "./surfacevalues.js";
 
 export const title = "Contours";
 // Pixels of the colored image between two points of the surface.
