@@ -109,7 +109,12 @@ def check(
             typer.echo(_with_file(error, file), err=True)
             reviews.append({"file": file, "ok": False, "error": str(error)})
             continue
-        reviews.append({"file": file, "ok": True, **found.as_json()})
+        said = [_with_file(mistake, file) for mistake in found.mistakes]
+        wrong = wrong or bool(said)
+        for line in said:
+            typer.echo(line, err=True)
+        why = {"error": "; ".join(said)} if said else {}
+        reviews.append({"file": file, "ok": not said, **why, **found.as_json()})
         if not json:
             _print_review(file, found)
     if json:
@@ -126,7 +131,7 @@ def _with_file(error: Exception, file: str) -> str:
 
 
 def _print_review(file: str, found: Review) -> None:
-    say(f"{file}: ok")
+    say(f"{file}: {'an output is NaN at some inputs' if found.mistakes else 'ok'}")
     lines = list(review_lines(found))
     width = max(len(key) for key, _ in lines)
     for key, text in lines:

@@ -145,7 +145,7 @@ def _coverage(review: Review) -> Iterator[tuple[str, str]]:
             yield "coverage", f"{hole.output}: too many rules to find where none fires"
             continue
         default = review.rules.output(hole.output).default
-        value = "NaN; add a rule, or give it a default" if default is None else f"{default:g}"
+        value = "NaN" if default is None else f"{default:g}"
         yield "coverage", f"{hole}; it is then {value}"
 
 

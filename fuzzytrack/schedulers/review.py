@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.as_json import rule_as_json
 from fuzzytrack.fuzzy.coverage import Hole, find_hole
 from fuzzytrack.fuzzy.loading import as_rulebase
@@ -66,6 +67,18 @@ class Review:
 
     def __repr__(self) -> str:
         return summary(self, "rules", "schedules")
+
+    @property
+    def mistakes(self) -> tuple[RuleBaseError, ...]:
+        """For each output that is NaN at some inputs an error that says where, and the remedy."""
+        return tuple(
+            RuleBaseError(
+                f"{hole}; add a rule, or give {hole.output} a default",
+                self.rules.place(hole.output),
+            )
+            for hole in self.holes
+            if hole.stretches and self.rules.output(hole.output).default is None
+        )
 
     def as_json(self) -> dict[str, Any]:
         """Review as JSON prints it."""

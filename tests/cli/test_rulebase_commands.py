@@ -380,9 +380,12 @@ rules:
 
 
 def test_check_names_a_single_point_without_a_rule(run, csv):
-    text = run("rulebase", "check", csv(TOUCHING, "touching.yaml")).stdout
+    result = run("rulebase", "check", csv(TOUCHING, "touching.yaml"))
+    text = result.stdout
+    assert result.exit_code == 2
+    assert "touching.yaml: an output is NaN at some inputs\n" in text
     assert "no rule fires on < 0.1 % of the inputs" in text
-    assert "no rule about u fires at p=4, q=8; it is then NaN; add a rule" in text
+    assert "no rule about u fires at p=4, q=8; it is then NaN\n" in text
     assert "u jumps to NaN (method table)" in text
     # On no grid point: it is named all the same.
     moved = TOUCHING.replace("2, 4]", "2, 3.14159]").replace("[4, 6", "[3.14159, 6")
@@ -390,9 +393,41 @@ def test_check_names_a_single_point_without_a_rule(run, csv):
     assert "no rule fires on" not in text
     assert "no rule about u fires at p=3.14159, q=8" in text
     default = TOUCHING.replace("u: {universe: [0, 1, 11],", "u: {universe: [0, 1, 11], default: 1,")
-    found = json.loads(run("rulebase", "check", csv(default, "default.yaml"), "--json").stdout)[0]
+    result = run("rulebase", "check", csv(default, "default.yaml"), "--json")
+    assert result.exit_code == 0
+    found = json.loads(result.stdout)[0]
     assert found["holes"]["u"]["p"] == [4, 4]
     assert found["ranges"]["u"][1] == 1
+
+
+THREE = """\
+rulebase: 1
+name: three
+inputs:
+  a: {universe: [0, 1, 11], sets: {lo: {trimf: [0, 0, 1]}, hi: {trimf: [0, 1, 1]}}}
+  b: {universe: [0, 1, 11], sets: {lo: {trimf: [0, 0, 1]}, hi: {trimf: [0, 1, 1]}}}
+  c: {universe: [0, 1, 11], sets: {lo: {trimf: [0, 0, 1]}, hi: {trimf: [0, 1, 1]}}}
+outputs:
+  u: {universe: [0, 1, 11], sets: {S: {trimf: [0, 0, 1]}, L: {trimf: [0, 1, 1]}}}
+operators: {and: product, or: sum, defuzzification: centroid}
+rules:
+  - {if: {a: lo, c: lo}, then: {u: S}}
+  - {if: {a: hi, c: hi}, then: {u: L}}
+  - {if: {a: hi, b: lo, c: lo}, then: {u: L}}
+"""
+
+
+def test_check_fails_where_an_output_of_three_inputs_is_nan(run, csv):
+    file = csv(THREE, "three.yaml")
+    where = "no rule about u fires for a at 0, b between 0 and 1, c at 1"
+    result = run("rulebase", "check", file)
+    assert result.exit_code == 2
+    assert result.stderr == f"{file}:8:17: {where}; add a rule, or give u a default\n"
+    found = json.loads(run("rulebase", "check", file, "--json").stdout)[0]
+    assert not found["ok"]
+    assert where in found["error"]
+    whole = THREE + "  - {if: {a: lo, c: hi}, then: {u: S}}\n  - {if: {b: hi}, then: {u: S}}\n"
+    assert run("rulebase", "check", csv(whole, "whole.yaml")).exit_code == 0
 
 
 NARROW = """\
