@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from numbers import Real
 from typing import Literal, get_args
 
 from fuzzytrack.plurals import counted
@@ -81,7 +82,7 @@ class Cleaning:
         value = getattr(self, name)
         if value is None or value == word:
             return
-        if isinstance(value, bool | str) or not fits(value):
+        if not isinstance(value, Real) or isinstance(value, bool) or not fits(float(value)):
             raise ValueError(f"{name}: {value!r}; expected {wanted}")
 
 

@@ -11,7 +11,7 @@ from fuzzytrack.io.cleaning_rules import Cleaning
 from fuzzytrack.io.description import PlotDescription
 from fuzzytrack.io.text_form import TextForm
 
-__all__ = ["Reading"]
+__all__ = ["Reading", "option_names"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +76,8 @@ def _names(part: Any) -> tuple[str, ...]:
 def option_names() -> tuple[str, ...]:
     """Names of all options of a reading."""
     parts = (PlotDescription, Cleaning, TextForm)
-    return (*(name for part in parts for name in _names(part)), "format", "sort")
+    # The period of a clock is in two of them.
+    return (*dict.fromkeys(name for part in parts for name in _names(part)), "format", "sort")
 
 
 def _check_all_used(options: Mapping[str, Any]) -> None:

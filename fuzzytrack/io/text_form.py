@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -62,14 +63,12 @@ class TextForm:
             )
         if self.decimal is not None and self.decimal not in _DECIMALS:
             raise ValueError(f"decimal: must be '.' or ',', got {self.decimal!r}")
-        if not _COMMENT.fullmatch(self.comment):
+        if not isinstance(self.comment, str) or not _COMMENT.fullmatch(self.comment):
             raise ValueError(f"comment: must be one or two marks as '#', got {self.comment!r}")
         for name in ("na", "columns"):
             values = getattr(self, name)
-            if isinstance(values, str):
-                raise ValueError(f"{name}: must be several texts, got {values!r}")
             if values is not None:
-                object.__setattr__(self, name, tuple(values))
+                object.__setattr__(self, name, _texts(name, values))
         if self.columns is not None and not self.columns:
             raise ValueError("columns: needs at least one name")
 
@@ -82,6 +81,14 @@ class TextForm:
     def missing_numbers(self) -> tuple[float, ...]:
         """Numbers that stand for a missing one."""
         return tuple(value for value in map(_number, self.na) if math.isfinite(value))
+
+
+def _texts(argument: str, values: object) -> tuple[str, ...]:
+    if isinstance(values, Iterable) and not isinstance(values, str):
+        found = tuple(values)
+        if all(isinstance(each, str) for each in found):
+            return found
+    raise ValueError(f"{argument}: must be several texts, got {values!r}")
 
 
 def _number(text: str) -> float:

@@ -114,6 +114,16 @@ class Arguments:
             return default
         return [self._number(name, each) for each in self._items(name, "a list of numbers")]
 
+    def simple(self, name: str, default: Any = _NEEDED) -> Any:
+        """A text, a finite number, or a list of either."""
+        kind = "a text, a number, or a list of them"
+        if self._missing(name, default, kind):
+            return default
+        found = self._given[name]
+        if not isinstance(found, list):
+            return self._text_or_number(name, found)
+        return [self._text_or_number(name, each) for each in self._items(name, kind)]
+
     def points(self, name: str, default: Any = _NEEDED) -> Any:
         """A list of pairs of finite numbers."""
         if self._missing(name, default, "a list of points [x, y]"):
@@ -146,6 +156,11 @@ class Arguments:
 
     def _wrong(self, name: str, why: str) -> ValueError:
         return ValueError(f"{self._within}{name}: {why}")
+
+    def _text_or_number(self, name: str, found: Any) -> str | float:
+        if not isinstance(found, str):
+            return self._number(name, found)
+        return Arguments({name: found}, self._within).text(name)  # type: ignore[no-any-return]
 
     def _number(self, name: str, found: Any) -> float:
         if isinstance(found, bool) or not isinstance(found, int | float):

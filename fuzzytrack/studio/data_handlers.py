@@ -38,7 +38,7 @@ def recording(page: Page, given: Arguments) -> Later:
     """Say what is in a recording; the page no longer waits for tracks of what it said before."""
     name = given.text("name")
     found = _recorded(page, name, given)
-    page.end("track")
+    page.replace("track")
 
     def work() -> Answer:
         told = {"name": name, "columns": found.columns(), "problem": None}
@@ -68,7 +68,7 @@ def track(page: Page, given: Arguments) -> Later:
 
     def work() -> Answer:
         trackers = make()
-        page.end("track")
+        page.replace("track")
         return {"job": page.start("track", _STEPS, track_work(found, trackers)).number}
 
     return Later(work)

@@ -18,6 +18,7 @@ from fuzzytrack.studio.run_jobs import Run
 from fuzzytrack.studio.snippets import (
     PageTexts,
     RunSnippet,
+    ScanSnippet,
     Snippet,
     TrackSnippet,
     TuneSnippet,
@@ -46,10 +47,10 @@ def export(page: Page, given: Arguments) -> Answer:
 
 
 def snippet(page: Page, given: Arguments) -> Answer:
-    """Python, or a command, that does what is on the page: runs, tracks or tunes."""
+    """Python, or a command, that does what is on the page: runs, tracks, scans or tunes."""
     what = given.choice("what", ("python", "command"))
-    of = given.choice("of", ("run", "track", "tune"), "run")
-    shown = {"run": _run, "track": _track, "tune": _tune}[of](page, given)
+    of = given.choice("of", ("run", "track", "scan", "tune"), "run")
+    shown = {"run": _run, "track": _track, "scan": _scan, "tune": _tune}[of](page, given)
     if what == "python":
         return {"text": shown.python()}
     if page.studio.command is None:
@@ -96,6 +97,10 @@ def _track(page: Page, given: Arguments) -> Snippet:
         trackers=given.texts("trackers", [EDITOR]),
         options=reading_options(given),
     )
+
+
+def _scan(page: Page, given: Arguments) -> Snippet:
+    return ScanSnippet(_texts(page), name=given.text("name"), options=reading_options(given))
 
 
 def _tune(page: Page, given: Arguments) -> Snippet:

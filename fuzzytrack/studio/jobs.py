@@ -205,6 +205,10 @@ class Jobs:
         self._cancel(job)
         return job
 
+    def replace(self, job: Job) -> None:
+        """End a job, unless it has ended, for another one that is wanted in its place."""
+        self._cancel(job, "replaced")
+
     def check(self) -> None:
         """End the job that runs if it has made no progress for too long."""
         job = self._current
@@ -219,8 +223,8 @@ class Jobs:
             self._current.end("cancelled")
         self._drop()
 
-    def _cancel(self, job: Job) -> None:
-        if job.end("cancelled"):
+    def _cancel(self, job: Job, state: str = "cancelled") -> None:
+        if job.end(state):
             self._drop()
 
     def _drop(self) -> None:

@@ -150,11 +150,10 @@ class Page:
         self.jobs[kind] = job
         return job
 
-    def end(self, kind: str) -> None:
-        """End the job of a kind that the page has started, if it runs."""
-        job = self.jobs.get(kind)
-        if job is not None and job.running:
-            self.studio.jobs.cancel(job.number, self)
+    def replace(self, kind: str) -> None:
+        """End the job of a kind that the page has started, if it runs, for another one."""
+        if kind in self.jobs:
+            self.studio.jobs.replace(self.jobs[kind])
 
     def report(self, job: Job, with_results: bool) -> None:
         """Tell the page of a job."""

@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Any, get_args
+from typing import Any
 
-from fuzzytrack.io.cleaning_rules import Duplicates
-from fuzzytrack.io.description import Azimuth, TimeUnit
+from fuzzytrack.io.reading import option_names
 from fuzzytrack.studio.arguments import Arguments
 from fuzzytrack.yamltree import suggestion
 
 __all__ = ["READING", "check_truth", "reading_options"]
 
-_CHOICES = {
-    "time_unit": get_args(TimeUnit),
-    "azimuth_from": get_args(Azimuth),
-    "duplicates": get_args(Duplicates),
-}
-_LISTS = ("axes", "polar", "geodetic", "truth")
-_NUMBERS = ("sigma", "sigma_range", "sigma_azimuth", "sigma_elevation", "max_gap")
+_FLAGS = ("cartesian", "sort")
 
 #: Names of the arguments.
-READING = ("time", "id", *_CHOICES, *_LISTS, *_NUMBERS, "site", "sort")
+READING = (*option_names(), "truth")
 
 
 def reading_options(given: Arguments) -> dict[str, Any]:
@@ -32,16 +25,13 @@ def reading_options(given: Arguments) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If one is of another type.
+        If one is of a type that no option has. Other values are refused when the file is read, so
+        that the page is told of its columns, of which another one may be all that is needed.
     """
     found = {
-        "time": given.text("time", None),
-        "id": given.text("id", None),
-        **{name: given.choice(name, allowed, None) for name, allowed in _CHOICES.items()},
-        **{name: given.texts(name, None) for name in _LISTS},
-        **{name: given.number(name, None) for name in _NUMBERS},
-        "site": given.numbers("site", None),
-        "sort": given.flag("sort") or None,
+        **{name: given.simple(name, None) for name in option_names() if name not in _FLAGS},
+        **{name: given.flag(name) or None for name in _FLAGS},
+        "truth": given.texts("truth", None),
     }
     return {name: value for name, value in found.items() if value is not None}
 

@@ -1,4 +1,7 @@
-"""Python, and commands, that do what is on the page: an experiment, tracks, a tuning."""
+"""Python, and commands, that do what is on the page: an experiment, tracks, a tuning.
+
+Tracks of plots without identities are not for the page, which gives the command for them.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from typing import Any
 from fuzzytrack import specs
 from fuzzytrack.studio.tracker_texts import EDITOR, SAVED
 
-__all__ = ["PageTexts", "RunSnippet", "Snippet", "TrackSnippet", "TuneSnippet"]
+__all__ = ["PageTexts", "RunSnippet", "ScanSnippet", "Snippet", "TrackSnippet", "TuneSnippet"]
 
 #: A command, what follows it, and its options by their names.
 Command = tuple[str, Sequence[str], Mapping[str, object]]
@@ -216,6 +219,31 @@ class TrackSnippet(Snippet):
         """See `Snippet.command`."""
         trackers = self.texts.all_typed(self.trackers)
         return "compare", [self.name], {"trackers": trackers, **self.options}
+
+
+@dataclass(frozen=True)
+class ScanSnippet(Snippet):
+    """Tracks of plots without identities."""
+
+    name: str
+    options: Mapping[str, Any]
+
+    def python(self) -> str:
+        """See `Snippet.python`."""
+        script = Script(self.texts)
+        script.imports("fuzzytrack", "track_scans")
+        given = "".join(f", {k}={v!r}" for k, v in self._read.items())
+        script.add(f"found = track_scans({self.name!r}{given})")
+        script.add("print(found)")
+        return str(script)
+
+    def command(self) -> Command:
+        """See `Snippet.command`."""
+        return "scan", [self.name], {**self._read, "output": f"tracks-of-{self.name}"}
+
+    @property
+    def _read(self) -> dict[str, Any]:
+        return {name: value for name, value in self.options.items() if name not in ("id", "truth")}
 
 
 @dataclass(frozen=True)

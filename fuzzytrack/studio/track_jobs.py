@@ -23,8 +23,8 @@ from fuzzytrack.trackers.base import Tracker
 
 __all__ = ["track_work"]
 
-# Shares of the work that are done when the file is read, and when the trackers are compared.
-_READ, _COMPARED = 0.1, 0.9
+# Share of the work that is done when the trackers are compared; the rest is for the pictures.
+_COMPARED = 0.9
 # Tracks and plots that are drawn.
 _TRACKS, _PLOTS = 8, 2_000
 
@@ -51,9 +51,8 @@ def track_work(recorded: Recorded, trackers: Mapping[str, Tracker]) -> Work:
     def work(job: Job, pool: ProcessPoolExecutor) -> dict[str, Any]:
         with naming(recorded.path):
             used = recorded.read()
-            job.progress(_READ)
             compared = compare_used(
-                trackers, used, executor=pool, progress=part(job.progress, _READ, _COMPARED)
+                trackers, used, executor=pool, progress=part(job.progress, 0.0, _COMPARED)
             )
         tracks = _drawn(used)
         runs: dict[str, _Drawn] = {}

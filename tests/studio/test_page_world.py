@@ -8,6 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
+from fuzzytrack.cli.studio_snippets import command_line
 from fuzzytrack.studio.notes import warnings_to_notes
 from fuzzytrack.studio.recorded import Recorded
 from fuzzytrack.testbed.montecarlo import monte_carlo
@@ -191,8 +192,8 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server, mon
     assert download.value.suggested_filename == "radar-innovations.svg"
     expect(studio.get_by_label("Positions")).to_have_value("polar")
     # What is estimated stands where it can be typed; 30 m and 0.1 degrees are true.
-    expect(studio.get_by_role("textbox", name="Range σ")).to_have_attribute("placeholder", "≈ 30")
-    studio.get_by_role("textbox", name="Range σ").fill("25")
+    expect(studio.get_by_role("combobox", name="Range σ")).to_have_attribute("placeholder", "≈ 30")
+    studio.get_by_role("combobox", name="Range σ").fill("25")
     studio.keyboard.press("Enter")
     expect(facts).to_contain_text("σ 25 m", timeout=60_000)
     status = studio.locator("#pane-data .progress [role=status]")
@@ -202,7 +203,7 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server, mon
         # The work waits where it reads the file.
         patch.setattr(Recorded, "read", lambda self: read.wait(60) and None)
         studio.get_by_role("button", name="Track and compare").click()
-        expect(status).to_have_text("Reading the recording…")
+        expect(status).to_contain_text("Starting")
         studio.locator("#pane-data").get_by_role("button", name="Cancel").click()
         expect(status).to_have_text("Canceled after 0 %.")
         read.set()
@@ -237,7 +238,10 @@ def drop(page, name, text):
     page.dispatch_event("#main", "drop", {"dataTransfer": transfer})
 
 
-def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv):
+def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(
+    studio, csv, server, monkeypatch
+):
+    monkeypatch.setattr(server.studio(), "command", command_line)
     drop(studio, "mine.yaml", "rulebase: 1")
     expect(studio.locator("#status")).to_contain_text("mine.yaml is no CSV file")
     # Dropped anywhere, in any view.
@@ -245,11 +249,29 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(studio, csv
     expect(studio.locator("#pane-data")).to_be_visible()
     # Two tracks without the column that tells them apart: the page says so, and takes the name.
     expect(studio.get_by_role("alert")).to_contain_text("mine.csv: row 112")
+    studio.get_by_role("button", name="No column has it").click()
+    dialog = studio.get_by_role("dialog")
+    expect(dialog).to_contain_text("fuzzytrack scan mine.csv --output tracks-of-mine.csv")
+    studio.keyboard.press("Escape")
     studio.get_by_label("Track column").select_option("id")
     rows = studio.locator("#pane-data .result-table tbody tr")
     expect(rows).to_have_count(5, timeout=60_000)
     expect(studio.locator("#pane-data")).to_contain_text("220 plots")
     studio.get_by_role("combobox", name="Track", exact=True).select_option("1")
+    # The noise may be in a column, and the table fits on a tablet.
+    studio.get_by_label("Truth").fill("true_x,true_y")
+    studio.get_by_role("combobox", name="Plot σ").fill("true_x")
+    studio.keyboard.press("Tab")
+    expect(studio.get_by_role("alert")).to_contain_text("column true_x")
+    studio.get_by_role("combobox", name="Plot σ").fill("9,5")
+    studio.keyboard.press("Tab")
+    expect(studio.locator("#pane-data .what")).to_contain_text("σ 9.5 m", timeout=60_000)
+    expect(rows.first.locator('[data-key="filtered"]')).to_be_visible()
+    size = studio.viewport_size
+    studio.set_viewport_size({"width": 820, "height": 1180})
+    table = studio.get_by_role("region", name="Comparison")
+    assert table.evaluate("table => table.scrollWidth <= table.clientWidth")
+    studio.set_viewport_size(size)
 
     studio.get_by_role("button", name="the recording").click()
     for label, text in [("Numbers to tune", "outputs"), ("Trials", "3"), ("Folds", "2")]:

@@ -1,6 +1,7 @@
 """Recordings that a page is given: tracked, compared, tuned on."""
 
 import json
+import shlex
 import threading
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
+from fuzzytrack.cli.studio_snippets import command_line
 from fuzzytrack.fuzzy.loading import loads_rulebase
 from fuzzytrack.studio.notes import warnings_to_notes
 from fuzzytrack.studio.recorded import Recorded
@@ -130,6 +132,60 @@ def test_polar_plots_are_tracked_as_by_the_command(page, server, tmp_path):
     assert len(expected) == 2
 
 
+def test_a_moving_sensor_noise_in_a_column_and_a_clock_that_restarts_are_read_as_by_the_command(
+    page, tmp_path
+):
+    random, lines = np.random.default_rng(5), ["time,range,bearing,noise,own_x,own_y,heading"]
+    for k in range(40):
+        x, y, heading, noise = 3000 - 20 * k, 1500 + 5 * k, 40 + k, 4 + k % 3
+        distance = np.hypot(x, y) + random.normal(0, noise)
+        bearing = np.degrees(np.arctan2(x, y)) + random.normal(0, 0.1) - heading
+        row = [k % 30, distance, bearing, noise, k * k, -3 * k, heading]
+        lines.append(",".join(f"{each:.6f}" for each in row))
+    text = "\n".join(lines) + "\n"
+    said = {
+        "polar": ["range", "bearing"],
+        "own_ship": ["own_x", "own_y"],
+        "own_heading": "heading",
+        "sigma_range": "noise",
+        "sigma_azimuth": 0.1,
+        "wrap": 30,
+    }
+    found = page.ask("upload", name="ship.csv", text=text, **said)
+    assert (found["plots"], found["tracks"]) == (40, 1)
+    assert [each["sigma"] for each in found["noise"]] == ["noise", 0.1]
+    found = tracked(page, name="ship.csv", trackers=TRACKERS[:1], **said)["results"]
+    path = tmp_path / "ship.csv"
+    path.write_text(text)
+    words = command_line("compare", [str(path)], {"trackers": TRACKERS[:1], **said, "json": True})
+    expected = json.loads(CliRunner().invoke(app, shlex.split(words)[1:]).output)["trackers"]
+    assert [row["rms"] for row in found["comparison"]["rows"]] == [s["rms"] for s in expected]
+    # Each of these matters.
+    for name in ("own_ship", "own_heading", "wrap"):
+        less = {key: value for key, value in said.items() if key != name}
+        other = tracked(page, name="ship.csv", trackers=TRACKERS[:1], **less)["results"]
+        rows = other["comparison"]["rows"] if other else []
+        assert [row["rms"] for row in rows] != [s["rms"] for s in expected], name
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        ({"sigma": -1}, "sigma"),
+        ({"sigma": ["no"]}, "no column 'no'"),
+        ({"own_ship": ["x"]}, "own_ship"),
+        ({"wrap": ["a"]}, "wrap: ['a']; expected a number of seconds above 0, or auto"),
+        ({"comment": 3}, "comment: must be one or two marks"),
+        ({"na": 7}, "na: must be several texts, got 7"),
+    ],
+)
+def test_what_cannot_be_said_of_a_recording_is_its_problem(page, csv, said, message):
+    """The page is told of the columns nevertheless, of which others may do."""
+    found = page.ask("upload", name="mine.csv", text=csv, id="id", **said)
+    assert message in found["problem"]
+    assert found["columns"][:2] == ["time", "id"]
+
+
 def test_warnings_about_tracks_are_notes_with_the_names_of_trackers(page, server):
     path = server.folder / "radar.csv"
     CliRunner().invoke(app, ["sample", "radar", "-o", str(path)])
@@ -195,5 +251,5 @@ def test_tracking_is_canceled_by_its_page_or_when_something_else_is_said_of_the_
         number = page.ask("track", name="mine.csv", trackers=TRACKERS, id="id")["job"]
     found = page.ask("recording", name="mine.csv", id="id", sigma=10)
     assert found["tracks"] == 2
-    assert page.job(number)[-1]["state"] == "cancelled"
+    assert page.job(number)[-1]["state"] == "replaced"
     read.set()

@@ -59,9 +59,12 @@ def test_commands_name_what_is_saved(page, server, monkeypatch):
     polar |= {"sort": True, "duplicates": "first", "site": [52.5, 5]}
     text = page.ask("snippet", what="command", of="track", **polar)["text"]
     assert text == (
-        "fuzzytrack compare a.csv --trackers chan-style --duplicates first --polar r,az "
-        "--sigma-range 30.0 --site 52.5,5.0 --sort"
+        "fuzzytrack compare a.csv --trackers chan-style --polar r,az --site 52.5,5.0 "
+        "--sigma-range 30.0 --duplicates first --sort"
     )
+    scan = {"name": "a.csv", "polar": ["r", "az"], "id": "ship", "wrap": 60, "truth": ["x", "y"]}
+    text = page.ask("snippet", what="command", of="scan", **scan)["text"]
+    assert text == ("fuzzytrack scan a.csv --wrap 60.0 --polar r,az --output tracks-of-a.csv")
     tune = {"free": "outputs, sets", "trials": 7, "sigma": 2.5}
     text = page.ask("snippet", what="command", of="tune", **tune)["text"]
     assert text == (
@@ -76,10 +79,10 @@ def test_commands_name_what_is_saved(page, server, monkeypatch):
     assert "save the rule base first" in message
 
 
-@pytest.mark.parametrize("of", ["track", "tune"])
+@pytest.mark.parametrize("of", ["track", "scan", "tune"])
 def test_scripts_of_recordings_are_python(page, of):
     page.ask("set_cell", row=0, column=1, text="S-S")
-    arguments = {"track": {"name": "a.csv", "truth": ["x", "y"]}, "tune": {"on": "a.csv"}}[of]
+    arguments = {"on": "a.csv"} if of == "tune" else {"name": "a.csv", "truth": ["x", "y"]}
     text = page.ask("snippet", what="python", of=of, sigma=2, **arguments)["text"]
     compile(text, of, "exec")
     assert "'a.csv'" in text

@@ -22,8 +22,8 @@ export const POSITIONS = {
 
 /** What is said of a recording of which nothing is said. */
 export const NOTHING = {
-  time: "", id: "", position: "axes", places: ["", "", ""], truth: "", noise: {},
-  azimuth_from: "", time_unit: "", duplicates: "", max_gap: null, sort: false,
+  time: "", id: "", position: "axes", places: ["", "", ""], truth: "", noise: {}, own_ship: ["", "", ""],
+  own_heading: "", azimuth_from: "", time_unit: "", wrap: null, duplicates: "", max_gap: null, sort: false,
 };
 
 const LABELS = {
@@ -38,7 +38,10 @@ const LABELS = {
   sigma_azimuth: "Azimuth σ",
   sigma_elevation: "Elevation σ",
   azimuth_from: "Azimuth from",
+  own_ship: "Own position",
+  own_heading: "Own heading",
   time_unit: "Unit of time",
+  wrap: "Clock restarts after",
   duplicates: "Plots at equal times",
   max_gap: "Longest gap",
   sort: "Sort by time",
@@ -62,13 +65,15 @@ const ARGUMENT = /^(\w+)(?=: )|`(\w+)`(?:=([^\s;]+))?/g;
 
 /** What is said of the recording that is chosen. */
 export function readingOf({ recording, readings }) {
-  return readings[recording] ?? NOTHING;
+  return { ...NOTHING, ...readings[recording] };
 }
 
 /** The same as commands take it. */
 export function argumentsOf(now) {
-  const { position, places, noise, truth, ...rest } = readingOf(now);
+  const { position, places, noise, truth, own_ship: own, ...rest } = readingOf(now);
   const given = { ...rest };
+  // One column of a place says nothing yet.
+  if (own[0] && own[1]) given.own_ship = own.filter((name) => name !== "");
   const named = places.filter((place) => place !== "");
   if (named.length) given[position] = named;
   if (truth) given.truth = truth.split(",").map((word) => word.trim());

@@ -37,7 +37,7 @@ export function mount(element, app) {
   const recording = recordingForm(app, run);
   const picks = trackerList(app);
   const compare = action("Track and compare", run, { class: "primary" });
-  const { element: progress, cancel } = jobBar(app, "track", "Progress of the recording", compare);
+  const { element: progress, cancel, words } = jobBar(app, "track", "Progress of the recording", compare);
   const facts = html("p", { class: "muted what" });
   const notes = html("ul", { class: "notes", tabindex: 0, "aria-label": "Notes" });
   const table = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" });
@@ -136,6 +136,10 @@ export function mount(element, app) {
     picture.redraw();
   });
   store.follow(["tracked", "trackShown"], () => picture.fit());
+  // What became of the tracks of another file, or of what was said of this one before.
+  store.follow(["working"], ({ working }) => {
+    if (working) words.textContent = "";
+  });
   store.follow(["working", "recording", "described", "job"], (now) => {
     work.hidden = !now.working;
     work.firstChild.textContent = `${now.recording} is being read.`;

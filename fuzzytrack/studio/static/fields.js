@@ -93,6 +93,36 @@ export function textField(label, placeholder, change, title = "") {
   return { element: html("label", { class: "field" }, html("span", { class: "label" }, label), input), show };
 }
 
+/** A number, the name of a column, or several of either; `change` hears null if it is empty. */
+export function numberOrColumn(columns, change) {
+  const id = `field-${(made += 1)}`;
+  const input = html("input", {
+    id,
+    type: "text",
+    list: columns,
+    spellcheck: "false",
+    autocomplete: "off",
+    onchange: () => {
+      // A comma within a number is a decimal one.
+      const words = Number.isFinite(typed(input.value)) ? [input.value] : input.value.split(/[,;]/);
+      const values = words.map((word) => (Number.isFinite(typed(word)) ? typed(word) : word.trim()));
+      change(input.value.trim() === "" ? null : values.length > 1 ? values : values[0]);
+    },
+  });
+  const [nameShown, unitShown] = [html("label", { for: id }), html("span", { class: "unit" })];
+  const show = (value) => {
+    const word = (each) => (typeof each === "number" ? written(each) : (each ?? ""));
+    if (document.activeElement !== input || input.value === "") input.value = [value].flat().map(word).join(", ");
+  };
+  function name(text, measure, help) {
+    nameShown.textContent = text;
+    unitShown.textContent = measure;
+    input.title = help;
+  }
+  const element = html("div", { class: "field" }, nameShown, html("span", { class: "with-unit" }, input, unitShown));
+  return { element, input, show, name };
+}
+
 /** A group of fields under a heading. */
 export function group(heading, ...children) {
   return html("section", { class: "group" }, html("h3", {}, heading), ...children);

@@ -39,7 +39,7 @@ export function jobBar({ store, socket, say }, kind, label, start) {
 // Until there is progress; a tuning compiles its trackers before.
 const STARTING = {
   run: "Starting…",
-  track: "Reading the recording…",
+  track: "Starting: the plots and the trackers are read…",
   tune: "Starting: the trackers are compiled first, which may take a minute.",
 };
 
@@ -48,6 +48,7 @@ function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
   const count = kind === "run" ? `${done} of ${of} runs` : `${Math.round((100 * done) / of)} %`;
   if (state === "running" && !done) return STARTING[kind];
   if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
+  if (state === "replaced") return "";
   if (state === "cancelled") return `Canceled after ${count}.`;
   if (state === "failed") return `Failed: ${inFields(error)}`;
   return `${kind === "run" ? `${of} runs` : "Done"} in ${duration(seconds)}.`;

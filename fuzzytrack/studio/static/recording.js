@@ -2,7 +2,8 @@
 
 import { argumentsOf, inFields, NOTHING, POSITIONS, readingOf, remedies } from "./columns.js";
 import { check, html, select } from "./elements.js";
-import { group, numberField, textField } from "./fields.js";
+import { keepText } from "./files.js";
+import { group, numberField, numberOrColumn, textField } from "./fields.js";
 import { shown } from "./numbers.js";
 
 // Bytes of a message besides the text of a file.
@@ -26,6 +27,9 @@ const CHOICES = {
     ["mean", "their mean"],
   ],
 };
+
+const NOISE =
+  "Standard deviation of the plots, or the column that has it; with commas, one for each axis. Estimated from the plots if it is empty";
 
 /** The form; `taken()` is called when a recording can be tracked. */
 export function recordingForm(app, taken) {
@@ -58,9 +62,14 @@ export function recordingForm(app, taken) {
     }),
   );
   const placeFields = places.map((each) => field("", each));
-  const noise = [0, 1, 2].map((k) =>
-    numberField("", "", (value) => putNoise(k, value), { least: 0, empty: true }),
+  const names = html("datalist", { id: "columns-of-recording" });
+  const noise = [0, 1, 2].map((k) => numberOrColumn(names.id, (value) => putNoise(k, value)));
+  const own = [0, 1, 2].map((k) =>
+    select("", [], "", (value) => {
+      put({ own_ship: readingOf(store.now).own_ship.map((each, j) => (j === k ? value : each)) });
+    }),
   );
+  const heading = select("", [], "", (value) => put({ own_heading: value }));
   const truth = textField(
     "Truth",
     "none",
@@ -80,7 +89,12 @@ export function recordingForm(app, taken) {
     empty: true,
     title: "A longer time without a plot ends the track",
   });
-  gap.input.placeholder = "automatic";
+  const wrap = numberField("Clock restarts after", "s", (value) => put({ wrap: value }), {
+    least: 0,
+    empty: true,
+    title: "Period of a clock that starts again, such as 86400; midnight and counters are recognized",
+  });
+  gap.input.placeholder = wrap.input.placeholder = "automatic";
   const sort = check("Sort by time", false, (value) => put({ sort: value }));
   const form = html(
     "div",
@@ -103,7 +117,19 @@ export function recordingForm(app, taken) {
       field("Unit of time", choices.time_unit),
       field("Plots at equal times", choices.duplicates),
       gap.element,
+      wrap.element,
       html("div", { class: "field" }, html("span", { class: "label" }, "Order"), sort),
+    ),
+  );
+  const moving = html(
+    "details",
+    { title: "Columns with the place of the sensor, to which the plots are added" },
+    html("summary", {}, "Moving sensor"),
+    html(
+      "div",
+      { class: "form-grid" },
+      ["Own x or latitude", "Own y or longitude", "Own z or altitude"].map((label, k) => field(label, own[k])),
+      field("Own heading", heading),
     ),
   );
   const element = group(
@@ -113,10 +139,18 @@ export function recordingForm(app, taken) {
     field("File", chosen),
     problem,
     form,
+    moving,
     faults,
+    names,
   );
   // Numbers of questions, of which the last one counts.
   let asked = 0;
+
+  /** Show the command for plots of which nothing says which target they are of. */
+  function scanCommand() {
+    const args = { what: "command", of: "scan", name: store.now.recording, ...argumentsOf(store.now) };
+    keepText(app, "snippet", args, "Tracks of plots without identities");
+  }
 
   /** Say something else of the recording, and read it again. */
   function put(change) {
@@ -207,15 +241,17 @@ export function recordingForm(app, taken) {
   store.follow(["recording", "readings", "described"], (now) => {
     const reading = readingOf(now);
     const { recording, described } = now;
-    form.hidden = faults.hidden = !recording;
+    form.hidden = faults.hidden = moving.hidden = !recording;
     if (!recording) return;
     const { found } = described ?? {};
-    const said = [reading.time, reading.id, ...reading.places].filter((name) => name !== "");
-    const names = [...new Set([...(described?.columns ?? []), ...said])];
+    const said = [reading.time, reading.id, ...reading.places, ...reading.own_ship, reading.own_heading];
+    const known = [...new Set([...(described?.columns ?? []), ...said])].filter((name) => name !== "");
+    const options = () => known.map((name) => html("option", { value: name }, name));
+    names.replaceChildren(...options());
     const offer = (list, usual, value) => {
       list.replaceChildren(
         html("option", { value: "" }, usual),
-        ...names.map((name) => html("option", { value: name }, name)),
+        ...options(),
       );
       list.value = value;
     };
@@ -232,24 +268,28 @@ export function recordingForm(app, taken) {
       places[k].setAttribute("aria-label", name);
     });
     noise.forEach(({ element: each, name, show, input: box }, k) => {
-      const known = kind.noise[k];
-      each.hidden = !known || (k === 2 && reading.places[2] === "");
-      if (!known) return;
-      name(known[1], known[2], "Standard deviation of the plots; estimated from them if it is empty");
+      const of = kind.noise[k];
+      each.hidden = !of || (k === 2 && reading.places[2] === "");
+      if (!of) return;
+      name(of[1], of[2], NOISE);
       const estimated = described?.noise?.[k]?.error ? shown(described.noise[k].sigma, 3) : null;
       box.placeholder = estimated ? `≈ ${estimated}` : "estimated";
-      show(reading.noise[known[0]] ?? null);
+      show(reading.noise[of[0]] ?? null);
     });
+    own.forEach((list, k) => offer(list, "none", reading.own_ship[k]));
+    offer(heading, "none", reading.own_heading);
     azimuth.hidden = reading.position !== "polar";
     position.parentElement.classList.toggle("wide", azimuth.hidden);
     truth.show(reading.truth);
     for (const [key, list] of Object.entries(choices)) list.value = reading[key];
     gap.show(reading.max_gap);
+    wrap.show(reading.wrap);
     sort.firstChild.checked = reading.sort;
   });
   store.follow(["described", "working"], ({ described, working }) => {
     problem.hidden = !described?.problem || working;
-    problem.replaceChildren(...(described?.problem ? withRemedies(described.problem, put) : []));
+    const scan = readingOf(store.now).id === "" ? scanCommand : null;
+    problem.replaceChildren(...(described?.problem ? withRemedies(described.problem, put, scan) : []));
   });
   // After a reload the recording is read again when it is looked at; its tracks are there still,
   // unless the server was started again.
@@ -261,13 +301,16 @@ export function recordingForm(app, taken) {
   return { element, dragged, put };
 }
 
-/** A message about a recording, and buttons that say of it what the message proposes. */
-export function withRemedies(text, put) {
+/**
+ * A message about a recording, and buttons that say of it what the message proposes; `scan` shows
+ * what is to be done where identities are missing.
+ */
+export function withRemedies(text, put, scan = null) {
   const [rest, found] = remedies(text);
   const sentence = html("span", {}, `${inFields(rest).replace(/[.]$/, "")}.`);
-  const buttons = found.map(([label, change]) =>
-    html("button", { type: "button", onclick: () => put(change) }, label),
-  );
+  const press = (label, run) => html("button", { type: "button", onclick: run }, label);
+  const buttons = found.map(([label, change]) => press(label, () => put(change)));
+  if (scan && text.includes("`id`")) buttons.push(press("No column has it: show the command for plots without identities", scan));
   return buttons.length ? [sentence, html("span", { class: "actions" }, buttons)] : [sentence];
 }
 

@@ -114,7 +114,7 @@ export function lineButton(name, index, off, toggle) {
       onclick: () => toggle(name),
     },
     swatch(index),
-    html("span", {}, name),
+    html("span", {}, name.split(/(?<=:)/).flatMap((word) => [word, html("wbr")])),
   );
 }
 
