@@ -29,6 +29,7 @@ __all__ = [
     "noise_differs",
     "prepare",
     "prepare_surveyed",
+    "shares_covariance",
     "suited",
 ]
 
@@ -149,14 +150,25 @@ def suited(tracker: Tracker | str, made: Tracker, *, axes_differ: bool) -> tuple
     axes_differ : bool
         Whether the noise of the plots differs between axes.
     """
-    scheduler = made.scheduler if isinstance(made, AlphaBetaTracker) else None
-    if (
-        axes_differ
-        and isinstance(tracker, str)
-        and isinstance(scheduler, FuzzyScheduler)
-        and "axes" in scheduler.outputs.parameters
-        and ":axes=" not in tracker
-    ):
+    if axes_differ and isinstance(tracker, str) and shares_covariance(tracker, made):
         spec = f"{tracker}:axes=own"
         return spec, make_tracker(spec)
     return tracker if isinstance(tracker, str) else repr(tracker), made
+
+
+def shares_covariance(spec: str, made: Tracker) -> bool:
+    """Whether a tracker keeps one covariance for all axes and its text does not say that it is to.
+
+    Parameters
+    ----------
+    spec : str
+        What names it; only its parameters matter.
+    made : Tracker
+        The tracker itself.
+    """
+    scheduler = made.scheduler if isinstance(made, AlphaBetaTracker) else None
+    return (
+        isinstance(scheduler, FuzzyScheduler)
+        and "axes" in scheduler.outputs.parameters
+        and ":axes=" not in spec
+    )

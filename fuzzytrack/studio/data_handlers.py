@@ -67,9 +67,9 @@ def track(page: Page, given: Arguments) -> Later:
     make = trackers_of(page, given.texts("trackers"))
 
     def work() -> Answer:
-        trackers = make()
+        make()  # what cannot be made is refused at once
         page.replace("track")
-        return {"job": page.start("track", _STEPS, track_work(found, trackers)).number}
+        return {"job": page.start("track", _STEPS, track_work(found, make)).number}
 
     return Later(work)
 

@@ -17,7 +17,7 @@ from fuzzytrack.studio.notes import by_name, noted
 from fuzzytrack.studio.pages import Page
 from fuzzytrack.studio.run_jobs import Run, run_work
 from fuzzytrack.studio.run_results import paired_as_json
-from fuzzytrack.studio.tracker_texts import EDITOR, make_trackers
+from fuzzytrack.studio.tracker_texts import EDITOR, MakeTrackers, make_trackers
 from fuzzytrack.studio.walk import MOST_STEPS, walk
 from fuzzytrack.testbed.montecarlo import simulated_runs
 from fuzzytrack.trackers.base import Tracker
@@ -49,7 +49,7 @@ def run(page: Page, given: Arguments) -> Later:
     return Later(work)
 
 
-def trackers_of(page: Page, texts: list[str]) -> Any:
+def trackers_of(page: Page, texts: list[str]) -> MakeTrackers:
     """Function that makes trackers of texts, with the rule base as it is now."""
     if any(split(text, "tracker")[0] == EDITOR for text in texts):
         page.session.check_loads("rules")
@@ -63,8 +63,8 @@ def trackers_of(page: Page, texts: list[str]) -> Any:
             raise ValueError("trackers: the rule base has not been saved yet; save it first")
         return loads_rulebase(saved)
 
-    def make() -> dict[str, Tracker]:
-        return make_trackers(texts, edited, page.studio.folder.place)
+    def make(axes_differ: bool = False) -> dict[str, Tracker]:
+        return make_trackers(texts, edited, page.studio.folder.place, axes_differ=axes_differ)
 
     return make
 

@@ -15,6 +15,7 @@ from fuzzytrack.studio.folder import naming
 from fuzzytrack.studio.jobs import Job, Work
 from fuzzytrack.studio.notes import by_name
 from fuzzytrack.studio.recorded import Recorded, summary_of
+from fuzzytrack.studio.tracker_texts import MakeTrackers
 from fuzzytrack.tasks import part, run_tasks
 from fuzzytrack.testbed.marks import best_of
 from fuzzytrack.testbed.recorded_comparison import compare_used
@@ -32,25 +33,27 @@ _TRACKS, _PLOTS = 8, 2_000
 _Drawn = list[dict[str, Array]]
 
 
-def track_work(recorded: Recorded, trackers: Mapping[str, Tracker]) -> Work:
+def track_work(recorded: Recorded, make: MakeTrackers) -> Work:
     """The work of a job that tracks a recording.
 
     Parameters
     ----------
     recorded : Recorded
-    trackers : mapping of str to Tracker
+    make : callable
+        Makes the trackers, by name.
 
     Returns
     -------
     callable
         Its results are what `summary_of` gives; ``name``; ``drawn``: the first tracks, with ``id``,
-        ``time``, ``plots``, ``truth`` and for each of ``trackers`` ``predicted``, ``filtered``,
+        ``time``, ``plots``, ``truth`` and for each of the ``trackers`` ``predicted``, ``filtered``,
         ``innovation``; and ``comparison``: ``columns`` (key, title, unit) and ``rows``.
     """
 
     def work(job: Job, pool: ProcessPoolExecutor) -> dict[str, Any]:
         with naming(recorded.path):
             used = recorded.read()
+            trackers = make(used.axes_differ)
             compared = compare_used(
                 trackers, used, executor=pool, progress=part(job.progress, 0.0, _COMPARED)
             )

@@ -5,16 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from fuzzytrack import specs
 from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.recordings.preparation import shares_covariance, suited
 from fuzzytrack.studio.folder import naming
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import as_trackers, catalog, tracker_of_rules
 
 __all__ = [
-    "EDITOR", "MOST_TRACKERS", "SAVED", "check_place", "listed_trackers", "make_trackers",
+    "EDITOR",
+    "MOST_TRACKERS",
+    "SAVED",
+    "MakeTrackers",
+    "check_place",
+    "listed_trackers",
+    "make_trackers",
 ]  # fmt: skip
 
 #: Names of the rule base as it is in the editor, and as it was last saved or opened.
@@ -23,10 +30,19 @@ EDITOR, SAVED = "editor", "saved"
 MOST_TRACKERS = 40
 
 
+class MakeTrackers(Protocol):
+    """Makes the trackers of a job; see `make_trackers`."""
+
+    def __call__(self, axes_differ: bool = False) -> dict[str, Tracker]:
+        """Make them, for plots whose noise may differ between axes."""
+
+
 def make_trackers(
     texts: Sequence[str],
     edited: Callable[[str], RuleBase],
     path: Callable[[str], Path],
+    *,
+    axes_differ: bool = False,
 ) -> dict[str, Tracker]:
     """Make trackers of what a page names, each named by its text.
 
@@ -39,6 +55,9 @@ def make_trackers(
         Gives the rule base of `EDITOR` or `SAVED`.
     path : callable
         Path of a file of the folder; refuses others.
+    axes_differ : bool
+        Whether the noise of the plots differs between axes; trackers then keep a covariance for
+        each, as those of commands do, see `fuzzytrack.recordings.preparation.suited`.
 
     Raises
     ------
@@ -55,7 +74,10 @@ def make_trackers(
         check_place(text, "trackers")
         name, options = specs.split(text, "tracker")
         if name in (EDITOR, SAVED):
-            named[text] = _of_rules(text, edited(name), options)
+            rules = edited(name)
+            named[text] = made = _of_rules(text, rules, options)
+            if axes_differ and shares_covariance(text, made):
+                named[text] = _of_rules(text, rules, {**options, "axes": "own"})
         elif specs.is_file(name):
             files.append(path(name))
             if not files[-1].is_file():
@@ -66,7 +88,11 @@ def make_trackers(
     with ExitStack() as stack:
         for file in files:
             stack.enter_context(naming(file))
-        return as_trackers(named)
+        found = as_trackers(named)
+        return {
+            name: suited(named[name], tracker, axes_differ=axes_differ)[1]
+            for name, tracker in found.items()
+        }
 
 
 def check_place(text: str, argument: str) -> None:

@@ -20,11 +20,11 @@ from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.saving import dumps_rulebase
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.recordings.judging import GateWidth
-from fuzzytrack.recordings.preparation import suited
+from fuzzytrack.recordings.preparation import shares_covariance, suited
 from fuzzytrack.simulation.scenario import Scenario
 from fuzzytrack.simulation.scenario_files import load_scenario, shipped_scenarios
 from fuzzytrack.tasks import Progress, part
-from fuzzytrack.trackers.catalog import as_tracker
+from fuzzytrack.trackers.catalog import as_tracker, tracker_of_rules
 from fuzzytrack.tuning.candidates import Candidates
 from fuzzytrack.tuning.criteria import CRITERIA, Criterion, Likelihood
 from fuzzytrack.tuning.data import TuningData, joined, recorded, simulated
@@ -221,7 +221,9 @@ def _candidates(
     tracker: str | RuleBase, free: Collection[str] | None, data: TuningData
 ) -> Candidates:
     if isinstance(tracker, RuleBase):
-        return rulebase_numbers(dumps_rulebase(tracker), tracker.name, {}, free)
+        own = data.axes_differ and shares_covariance("", tracker_of_rules(tracker, {}))
+        options = {"axes": "own"} if own else {}
+        return rulebase_numbers(dumps_rulebase(tracker), tracker.name, options, free)
     name, options = specs.split(tracker, "tracker")
     if specs.is_file(name) or name in shipped_rulebases():
         # As it will be run on such plots.

@@ -124,12 +124,17 @@ def test_polar_plots_are_tracked_as_by_the_command(page, server, tmp_path):
     estimated = [(each["sigma"], each["error"]) for each in found["noise"]]
     for (sigma, error), true in zip(estimated, (30, 0.1), strict=True):
         assert abs(sigma - true) < 4 * error < true
-    found = tracked(page, name="radar.csv", trackers=TRACKERS, **said)["results"]
-    command = ["compare", str(path), "--trackers", ",".join(TRACKERS), "--id", "track", "--json"]
+    # The noise differs between x and y, so that each has a covariance of its own.
+    page.ask("open", name="maneuver")
+    trackers = ["maneuver", *TRACKERS]
+    found = tracked(page, name="radar.csv", trackers=[*trackers, "editor"], **said)["results"]
+    command = ["compare", str(path), "--trackers", ",".join(trackers), "--id", "track", "--json"]
     command += ["--polar", "range,azimuth", "--sigma-range", "30", "--sigma-azimuth", "0.1"]
     expected = json.loads(CliRunner().invoke(app, command).output)["trackers"]
-    assert [row["rms"] for row in found["comparison"]["rows"]] == [s["rms"] for s in expected]
-    assert len(expected) == 2
+    own = [row["rms"] for row in found["comparison"]["rows"]]
+    assert own == [*(s["rms"] for s in expected), expected[0]["rms"]]
+    shared = tracked(page, name="radar.csv", trackers=["maneuver:axes=shared"], **said)["results"]
+    assert shared["comparison"]["rows"][0]["rms"] != own[0]
 
 
 def test_a_moving_sensor_noise_in_a_column_and_a_clock_that_restarts_are_read_as_by_the_command(

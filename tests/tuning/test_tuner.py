@@ -241,6 +241,17 @@ def test_numbers_that_make_no_tracker_are_refused():
     assert "compiled=False" in repr(run)
 
 
+def test_a_rule_base_is_tuned_as_its_name_is():
+    for differ in (False, True):
+        data = replace(random_walk(3, 90, 0.5), axes_differ=differ)
+        named, loaded = (
+            tuner._candidates(tracker, None, data)
+            for tracker in ("maneuver", load_rulebase("maneuver"))
+        )
+        assert named.tracker(named.space.start) == loaded.tracker(loaded.space.start)
+        assert dict(loaded.options) == ({"axes": "own"} if differ else {})
+
+
 def test_the_change_is_that_of_paired_errors():
     rng = np.random.default_rng(2)
     other = rng.gamma(3.0, 1.0, 400)
