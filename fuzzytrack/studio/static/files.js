@@ -15,7 +15,7 @@ const KEYS = [
   ["Arrows", "move in the table; turn the surface; move the point in the contours"],
   ["Enter, F2 or a letter", "type in a cell; Enter keeps it, Esc leaves it"],
   ["+ and −", "next and previous set of the colored output in a cell; zoom of the surface"],
-  ["Shift click on a word", "the rule says it besides the others, which share it"],
+  ["Shift click or Shift Enter on a word", "the rule says it besides the others, which share it"],
   ["Arrows on a corner of a set, or on its square", "move the corner or the set, with Shift ten times as far; Esc takes it back"],
   ["Alt while dragging", "no snapping"],
   ["Shift Arrows on the surface", "move the explained point"],

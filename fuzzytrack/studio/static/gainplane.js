@@ -99,7 +99,7 @@ export function mount(element, app) {
   }
 
   store.follow(["planeRange"], ({ planeRange }) =>
-    range.show([["whole", "whole triangle"], ["near", "reachable"]], planeRange),
+    range.show([["whole", "triangle", "The whole triangle of stability"], ["near", "reachable", "The gains that the rules reach"]], planeRange),
   );
   store.follow(["state", "view", "runs", "connected"], ask);
   store.follow(["gains", "planeRange", "explanation", "scheme", "view"], draw);

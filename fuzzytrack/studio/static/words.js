@@ -13,7 +13,8 @@ export function showWords(element, app, slot, change) {
   const { rulebase } = app.store.now.state;
   const isList = rulebase.rules.form === "list";
   if (!slot) {
-    const hint = html("p", { class: "hint" }, "Choose a cell, then its words here; or type in the cell.");
+    const [one, place] = isList ? ["rule", "its last column"] : ["cell", "the cell"];
+    const hint = html("p", { class: "hint" }, `Choose a ${one}, then its words here; or type in ${place}.`);
     element.replaceChildren(hint, ...(isList ? [adder(app)] : []));
     return;
   }

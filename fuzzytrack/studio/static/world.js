@@ -230,6 +230,9 @@ function factsOf({ scenario: { scans, tracks, time, truth, sensors } }) {
       sensors.positions.some((at, k) => apart(at, point) <= radius(sensors, k)),
     );
     words.push(`${seen.length} of ${all.length} positions within reach of a sensor`);
+    if (all.some((point) => sensors.positions.some((at) => apart(at, point) === 0))) {
+      words.push("the target is exactly at a sensor, where it cannot be measured: move one of them");
+    }
   }
   return words.join(" · ");
 }
