@@ -19,11 +19,16 @@ def import_graph(package: Path) -> Graph:
 
     One import does not count: that of ``package.plotting`` in a method ``plot``, which draws.
     """
-    files = {_name(path, package): path for path in sorted(package.rglob("*.py"))}
+    files = modules_of(package)
     return {
         name: {found for found in _imports(name, path, set(files)) if found != name}
         for name, path in files.items()
     }
+
+
+def modules_of(package: Path) -> dict[str, Path]:
+    """Names of the modules of a package, and their files."""
+    return {_name(path, package): path for path in sorted(package.rglob("*.py"))}
 
 
 def circles(graph: Graph) -> list[str]:
@@ -70,8 +75,9 @@ def _name(path: Path, package: Path) -> str:
 def _imports(name: str, path: Path, modules: set[str]) -> Iterator[str]:
     """Modules that `name` imports, and the packages that this runs."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    drawing = {id(node) for node in _drawing(tree, f"{name.partition('.')[0]}.plotting")}
-    for node in ast.walk(tree):
+    nodes = list(ast.walk(tree))
+    drawing = {id(node) for node in _drawing(nodes, f"{name.partition('.')[0]}.plotting")}
+    for node in nodes:
         if id(node) in drawing:
             continue
         for target in _targets(node, modules):
@@ -83,9 +89,9 @@ def _imports(name: str, path: Path, modules: set[str]) -> Iterator[str]:
                     yield package
 
 
-def _drawing(tree: ast.Module, pictures: str) -> Iterator[ast.ImportFrom]:
+def _drawing(nodes: list[ast.AST], pictures: str) -> Iterator[ast.ImportFrom]:
     """Imports of the room of pictures in methods that are called ``plot``."""
-    for kind in ast.walk(tree):
+    for kind in nodes:
         for method in kind.body if isinstance(kind, ast.ClassDef) else ():
             if isinstance(method, ast.FunctionDef) and method.name == "plot":
                 for node in ast.walk(method):
