@@ -79,9 +79,10 @@ def pytest_runtest_protocol(item, nextitem):
 
 
 def pytest_sessionstart(session):
-    """Pause coverage also while Numba compiles, which takes twice as long when it is traced."""
+    """Pause coverage also where tracing doubles the time: Numba compiles, pytest rewrites tests."""
     if _running_coverage() is None:
         return
+    _leave_rewriting_out()
     from numba.core import event
 
     class Compilation(event.Listener):
@@ -94,3 +95,19 @@ def pytest_sessionstart(session):
                 _pause.end()
 
     event.register("numba:compiler_lock", Compilation())
+
+
+def _leave_rewriting_out():
+    """Pause coverage while assertions of a test module are rewritten, which runs nothing of it."""
+    from _pytest.assertion import rewrite
+
+    rewrite_test = rewrite._rewrite_test
+
+    def untraced(*arguments):
+        _pause.start()
+        try:
+            return rewrite_test(*arguments)
+        finally:
+            _pause.end()
+
+    rewrite._rewrite_test = untraced
