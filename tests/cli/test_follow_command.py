@@ -74,8 +74,8 @@ def follow(tmp_path, monkeypatch, capfd):
 
 
 def test_each_line_is_answered_before_the_next_one_comes():
-    # Compiled first, since this feed has not ended yet.
-    with following(*FIXED[:2]) as process:
+    # Compiled first, since this feed has not ended yet; code of other tests, which is kept on disk.
+    with following("--tracker", "fixed:alpha=0.5:beta=0.2:gamma=0.05") as process:
         send(process, "time,x")
         for time_, x in (0, 10), (1, 12), (2, 14):
             send(process, f"{time_},{x}")

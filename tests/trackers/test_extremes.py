@@ -14,20 +14,20 @@ from fuzzytrack.trackers.imm import InteractingPair
 from fuzzytrack.trackers.runners import runner
 
 NAMES = [
-    "fixed:alpha=0.5:beta=0.2",
-    "kalman-cv:sigma_v=1",
+    "fixed:alpha=0.5:beta=0.2:gamma=0.05",
+    "kalman-cv:sigma_v=0.5",
     "kalman-ca:sigma_v=1:acceleration_sigma=1",
     "stiffness-damping",
     "chan-style",
     "omega-schedule",
     "maneuver",
-    "maneuver:level=3",
-    "imm:quiet_sigma=0.1:maneuver_sigma=1",
+    "maneuver:level=5",
+    "imm:quiet_sigma=0.2:maneuver_sigma=3",
     "imm-two:level=3",
     "imm-three",
 ]
 TRACKERS = {name: make_tracker(name) for name in NAMES}
-#: Those that are compiled here, too.
+#: Those that are compiled here, too; with numbers of other tests, so that they share the code.
 COMPILED = [NAMES[0], NAMES[1], NAMES[7], NAMES[8]]
 T = np.arange(8.0)
 PLAIN = np.array([0.0, 10.0, 19.0, 31.0, 40.0, 52.0, 60.0, 71.0])
@@ -172,7 +172,7 @@ def test_a_compiled_step_refuses_what_a_run_refuses():
 
 
 def test_the_error_names_sigma_and_its_place():
-    tracker = TRACKERS["kalman-cv:sigma_v=1"]
+    tracker = TRACKERS["kalman-cv:sigma_v=0.5"]
     with pytest.raises(ValueError, match=r"since it is squared, .* at index \(2,\) it is 1e-170"):
         tracker.run(T[:3], PLAIN[:3], [1.0, 1.0, 1e-170])
     # Of a missed plot it may be anything.
@@ -212,7 +212,7 @@ def test_the_error_names_the_track():
 # ---------------------------------------------------------------- masks
 
 
-@pytest.mark.parametrize("name", [NAMES[0], "kalman-cv:sigma_v=1"])
+@pytest.mark.parametrize("name", [NAMES[0], "kalman-cv:sigma_v=0.5"])
 def test_masks_count_in_times_and_sigmas(name):
     tracker = TRACKERS[name]
     mask = [False, False, True, False]
@@ -232,7 +232,7 @@ def test_masks_count_in_times_and_sigmas(name):
 
 
 def test_masks_count_in_single_steps():
-    tracker = TRACKERS["kalman-cv:sigma_v=1"]
+    tracker = TRACKERS["kalman-cv:sigma_v=0.5"]
     state = tracker.start([0.0, 0.0], 0.0, 1.0)
     with pytest.raises(ft.DataError, match="t: time at index 0 is masked"):
         tracker.step(state, [1.0, 1.0], np.ma.masked, 1.0)
@@ -249,7 +249,7 @@ def test_masks_count_in_single_steps():
     st.lists(st.booleans(), min_size=8, max_size=8), st.lists(st.booleans(), min_size=8, max_size=8)
 )
 def test_no_number_under_a_mask_is_used(no_plot, no_sigma):
-    tracker = TRACKERS["kalman-cv:sigma_v=1"]
+    tracker = TRACKERS["kalman-cv:sigma_v=0.5"]
     sigma = np.ma.array(np.full(8, 7.0), mask=no_sigma)
     z = np.ma.array(PLAIN, mask=no_plot)
     if (np.array(no_sigma) & ~np.array(no_plot)).any():

@@ -18,10 +18,11 @@ pytestmark = pytest.mark.untraced
 
 SIGMA = 7.0
 TRACKS, AXES = 3, 2
+# Numbers of other tests where they do not matter, so that code is compiled once for all of them.
 TRACKERS = {
-    "fixed": ft.AlphaBetaTracker(ft.FixedGains(0.55, 0.2, 0.04)),
-    "kalman-cv": ft.AlphaBetaTracker(KalmanCV(0.6, velocity_sigma=20.0), "one-point"),
-    "kalman-ca": ft.AlphaBetaTracker(KalmanCA(0.6, 1.2)),
+    "fixed": ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05)),
+    "kalman-cv": ft.AlphaBetaTracker(KalmanCV(0.5, velocity_sigma=20.0), "one-point"),
+    "kalman-ca": ft.AlphaBetaTracker(KalmanCA(0.5, 1.0, 10.0)),
     "omega-schedule": ft.AlphaBetaTracker("omega-schedule"),
     "bank": ParallelBank(members=4, selection="best"),
     "imm": InteractingPair(0.2, 3.0),

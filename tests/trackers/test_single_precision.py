@@ -38,7 +38,7 @@ TRACKERS = {
     ),
     "coupled": COUPLED,
     "kalman-cv": KALMAN,
-    "kalman-ca": ft.AlphaBetaTracker(KalmanCA(0.5, 1.0)),
+    "kalman-ca": ft.AlphaBetaTracker(KalmanCA(0.5, 1.0, 10.0)),
     "innovation": ft.AlphaBetaTracker(InnovationScheduler(window=3)),
     "window search": WindowSearch(window=4),
 }

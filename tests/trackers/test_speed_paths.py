@@ -25,7 +25,7 @@ pytestmark = pytest.mark.untraced
 FIXED = ft.AlphaBetaTracker(ft.FixedGains(0.5, 0.2, 0.05))
 FUZZY = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("stiffness-damping")))
 COUPLED = ft.AlphaBetaTracker(ft.FuzzyScheduler(ft.load_rulebase("chan-style")))
-KALMAN = ft.AlphaBetaTracker(KalmanCV(2.0))
+KALMAN = ft.AlphaBetaTracker(KalmanCV(0.5))
 TRACKERS = {"fixed": FIXED, "fuzzy": FUZZY, "coupled": COUPLED}
 
 
