@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import inspect
+import math
 import re
 import types
 import typing
 from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
+from fuzzytrack.numerals import as_number, is_number
 from fuzzytrack.yamltree import suggestion
 
 __all__ = [
@@ -165,12 +167,25 @@ def _value(key: str, text: str, annotation: Any, readers: Readers) -> Any:
             return readers[kind](text)
     known = [_WORDS[kind] for kind in kinds if kind in _WORDS]
     # Without an annotation that is known: a number if it looks like one.
-    for name, read in known or [("", int), ("", float), ("", str)]:
+    for name, read in known or [("", _whole), ("", _number), ("", str)]:
         try:
             return read(text)
         except ValueError:
             wanted = name
     raise ValueError(f"{key} must be {wanted}, got {text!r}")
+
+
+def _number(text: str) -> float:
+    value = math.inf if text == "inf" else as_number(text)
+    if value is None:
+        raise ValueError(text)
+    return value
+
+
+def _whole(text: str) -> int:
+    if not is_number(text):
+        raise ValueError(text)
+    return int(text)
 
 
 def _boolean(text: str) -> bool:
@@ -182,7 +197,7 @@ def _boolean(text: str) -> bool:
 
 _WORDS: dict[Any, tuple[str, Callable[[str], Any]]] = {
     bool: ("true or false", _boolean),
-    int: ("a whole number", int),
-    float: ("a number", float),
+    int: ("a whole number", _whole),
+    float: ("a number", _number),
     str: ("a word", str),
 }

@@ -18,6 +18,7 @@ from typing import Any
 import yaml
 
 from fuzzytrack.errors import FileError, Location, RuleBaseError
+from fuzzytrack.numerals import as_number
 
 __all__ = [
     "MAX_BYTES",
@@ -28,7 +29,6 @@ __all__ = [
     "Node",
     "Scalar",
     "Sequence",
-    "is_number",
     "quoted",
     "suggestion",
 ]
@@ -50,7 +50,6 @@ _NO_TEXT = {
     b"\x28\xb5\x2f\xfd": "compressed by zstd",
     b"PK\x03\x04": "a zip archive",
 }
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _SHOWN_CHARACTERS = 60
 _SHOWN_WORDS = 30
 
@@ -192,11 +191,6 @@ def suggestion(word: str, allowed: Collection[str]) -> str:
     return f"{guess} allowed: {', '.join(words[:_SHOWN_WORDS])}{more}"
 
 
-def is_number(word: str) -> bool:
-    """Whether a word is a number; `float` also takes underscores, "infinity" and other digits."""
-    return _NUMBER.fullmatch(word) is not None
-
-
 class Document:
     """A parsed text, with methods that read its nodes and make errors with their places.
 
@@ -305,8 +299,8 @@ class Document:
 
     def as_number(self, node: Node, word: str, role: str, offset: int = 0) -> float:
         """Read a finite number written in part of a scalar."""
-        value = float(word) if is_number(word) else float("inf")
-        if value in (float("inf"), float("-inf")):
+        value = as_number(word)
+        if value is None:
             raise self.error(node, f"{role} must be a finite number, not {quoted(word)}", offset)
         return value
 

@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from fuzzytrack.errors import FileError
+from fuzzytrack.numerals import is_number
 from fuzzytrack.yamledits import DocumentEdits
-from fuzzytrack.yamltree import Mapping, Node, Scalar, is_number, quoted, suggestion
+from fuzzytrack.yamltree import Mapping, Node, Scalar, quoted, suggestion
 from fuzzytrack.yamltree import Sequence as ListNode
 
 __all__ = ["Path", "Value", "insert_value", "remove_value", "set_value"]

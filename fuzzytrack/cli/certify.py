@@ -14,6 +14,7 @@ from fuzzytrack.fuzzy.loading import load_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains.certificate import Certificate
 from fuzzytrack.gains.covariance_certificate import CovarianceCertificate
+from fuzzytrack.numerals import as_number
 from fuzzytrack.schedulers.reachable_gains import certify as certify_gains
 from fuzzytrack.schedulers.reachable_gains import sequence_steps
 
@@ -109,10 +110,9 @@ def certify(
 
 def _limits(text: str) -> tuple[float, float]:
     """Two times with a colon between them."""
-    try:
-        low, high = (float(part) for part in text.split(":"))
-    except ValueError:
-        raise ValueError(f"--steps: expected LOW:HIGH, two times, got {text!r}") from None
+    low, high = (as_number(part.strip()) for part in text.partition(":")[::2])
+    if low is None or high is None:
+        raise ValueError(f"--steps: expected LOW:HIGH, two times, got {text!r}")
     return low, high
 
 

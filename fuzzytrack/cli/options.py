@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from fuzzytrack.numerals import as_number
 from fuzzytrack.plugins.scripts import load_script
 from fuzzytrack.yamltree import suggestion
 
@@ -120,12 +121,10 @@ def numbers_at(text: str, wanted: Iterable[str], option: str = "--at") -> dict[s
     for name, value in found.items():
         if name not in wanted:
             raise ValueError(f"{option}: no such input {name!r}{suggestion(name, wanted)}")
-        try:
-            numbers[name] = float(value)
-        except ValueError:
-            raise ValueError(f"{option}: {name} must be a number, got {value!r}") from None
-        if numbers[name] != numbers[name]:
-            raise ValueError(f"{option}: {name} must be a number, got {value!r}")
+        number = as_number(value)
+        if number is None:
+            raise ValueError(f"{option}: {name} must be a finite number, got {value!r}")
+        numbers[name] = number
     missing = [name for name in wanted if name not in numbers]
     if missing:
         raise ValueError(f"{option}: needs {', '.join(missing)} too; got {text!r}")
@@ -138,11 +137,9 @@ def lags(text: str) -> float | dict[str, float] | Literal["auto"] | None:
         return None
     if text == "auto":
         return "auto"
-    try:
-        if "=" in text:
-            return {name: float(value) for name, value in pairs(text, "--lag").items()}
-        return float(text)
-    except ValueError:
-        raise ValueError(
-            f"--lag: expected seconds, GROUP=SECONDS,…, auto or none, got {text!r}"
-        ) from None
+    given = pairs(text, "--lag") if "=" in text else {"": text}
+    found = {name: as_number(value) for name, value in given.items()}
+    numbers = {name: value for name, value in found.items() if value is not None}
+    if len(numbers) < len(found):
+        raise ValueError(f"--lag: expected seconds, GROUP=SECONDS,…, auto or none, got {text!r}")
+    return numbers if "=" in text else numbers[""]

@@ -13,6 +13,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.io.reading import Reading
+from fuzzytrack.numerals import as_number
 from fuzzytrack.recordings.judging import GateWidth
 from fuzzytrack.recordings.scan_plots import OF_TRACKS
 
@@ -237,8 +238,8 @@ def number_or(text: str, option: str, words: dict[str, Any]) -> Any:
     """A number > 0, or one of some words."""
     if text in words:
         return words[text]
-    value = _number(text)
-    if value is None or not 0 < value < math.inf:
+    value = as_number(text)
+    if value is None or not value > 0:
         more = "".join(f", or {word}" for word in words)
         raise ValueError(f"{option}: expected a number > 0{more}, got {text!r}")
     return value
@@ -253,17 +254,10 @@ def gate_width(text: str) -> GateWidth:
 def _numbers(text: str | None, option: str) -> tuple[float, ...] | None:
     if text is None:
         return None
-    found = [_number(part) for part in text.split(",")]
-    if not all(value is not None and math.isfinite(value) for value in found):
+    found = [as_number(part.strip()) for part in text.split(",")]
+    if None in found:
         raise ValueError(f"{option}: expected numbers with commas between them, got {text!r}")
     return tuple(value for value in found if value is not None)
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
 
 
 def _sigma(text: str | None, option: str) -> float | str | tuple[float | str, ...] | None:
@@ -272,8 +266,8 @@ def _sigma(text: str | None, option: str) -> float | str | tuple[float | str, ..
         return None
     found: list[float | str] = []
     for name in options.names(text, option):
-        value = _number(name)
-        if value is not None and not 0 < value < math.inf:
+        value = as_number(name)
+        if value is not None and not value > 0:
             raise ValueError(f"{option} must be > 0, got {value:g}")
         found.append(name if value is None else value)
     return found[0] if len(found) == 1 else tuple(found)
@@ -284,7 +278,8 @@ def _ranges(text: str) -> list[tuple[str, float, float]]:
     found = []
     for name, limits in options.pairs(text, "--valid").items():
         low, colon, high = limits.partition(":")
-        least, most = (_number(part) for part in (low or "-inf", high or "inf"))
+        least = as_number(low.strip()) if low else -math.inf
+        most = as_number(high.strip()) if high else math.inf
         if not colon or least is None or most is None or not least <= most:
             raise ValueError(f"--valid: expected COL=LOW:HIGH, got {text!r}")
         found.append((name, least, most))

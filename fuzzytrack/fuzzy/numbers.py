@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from fuzzytrack.fuzzy.loading import loads_rulebase
-from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, is_number, quoted
+from fuzzytrack.numerals import is_number
+from fuzzytrack.yamltree import Document, Node, Scalar, Sequence, quoted
 from fuzzytrack.yamltree import Mapping as MappingNode
 
 __all__ = ["NumberPlaces", "replaced", "with_numbers", "written"]

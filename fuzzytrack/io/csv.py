@@ -20,9 +20,10 @@ from fuzzytrack.io.byte_stream import ByteStream, open_bytes
 from fuzzytrack.io.csv_blocks import block_parts, is_large, parser
 from fuzzytrack.io.csv_lines import CHUNK, Part, line_parts, text_lines
 from fuzzytrack.io.recognition import HEAD, encoding_of, recognize
-from fuzzytrack.io.table import Column, Kind, Table, Values, is_number, silent
+from fuzzytrack.io.table import Column, Kind, Table, Values, silent
 from fuzzytrack.io.text_form import PLAIN, TextForm
 from fuzzytrack.io.track_text import iso_times
+from fuzzytrack.numerals import is_number
 from fuzzytrack.plurals import counted
 from fuzzytrack.tasks import Progress
 

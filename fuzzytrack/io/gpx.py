@@ -15,6 +15,7 @@ from fuzzytrack.io.geo_track import GeoTrack, numbered
 from fuzzytrack.io.readers import Reader
 from fuzzytrack.io.record_source import Losses, RecordSource, Row
 from fuzzytrack.io.track_text import decimals, iso_times, xml_text
+from fuzzytrack.numerals import as_number
 from fuzzytrack.version import __version__
 
 __all__ = ["Gpx", "write"]
@@ -182,11 +183,8 @@ class _Points:
 
 def _number(text: str) -> float:
     """Number of a text; NaN if it is none."""
-    try:
-        value = float(text) if "_" not in text else math.nan
-    except ValueError:
-        return math.nan
-    return value if math.isfinite(value) else math.nan
+    value = as_number(text.strip())
+    return math.nan if value is None else value
 
 
 # -------------------------------------------------------------------- writing

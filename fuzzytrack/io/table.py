@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.text_form import PLAIN, TextForm
+from fuzzytrack.io.text_form import MISSING, PLAIN, TextForm
+from fuzzytrack.numerals import as_number, is_number
 from fuzzytrack.reprs import summary
 
 __all__ = [
@@ -29,7 +30,6 @@ __all__ = [
     "Values",
     "Words",
     "checked_names",
-    "is_number",
     "no_rows",
     "silent",
 ]
@@ -278,7 +278,7 @@ class Column:
 
     def _plain_numbers(self, cells: Sequence[str], rows: Sequence[int]) -> Array:
         plain = "\n".join(cells)
-        # Python would also take 1_000 and digits of other scripts.
+        # What else Python takes, `as_number` does not.
         if plain.isascii() and "_" not in plain:
             texts = cells
             if self.form.decimal == "," and plain.count("\n") == len(cells) - 1:
@@ -299,15 +299,10 @@ class Column:
         plain = text
         if self.form.decimal == ",":
             plain = text.replace(".", "?").replace(",", ".")
-        if plain.isascii() and "_" not in plain:
-            try:
-                value = float(plain)
-            except ValueError:
-                pass
-            else:
-                if math.isfinite(value):
-                    return value
-        raise self.error(row, cell)
+        value = as_number(plain)
+        if value is None:
+            raise self.error(row, cell)
+        return value
 
     def error(self, row: int, cell: str) -> DataError:
         """Error about a cell that does not hold what it must."""
@@ -337,21 +332,13 @@ def checked_names(names: Sequence[str], file: str) -> tuple[str, ...]:
     DataError
         If they are numbers, or two are the same.
     """
-    if all(map(is_number, names)):
+    cells = [name.strip() for name in names]
+    if any(map(is_number, cells)) and all(is_number(c) or c.lower() in MISSING for c in cells):
         raise DataError(f"{file}: row 1: holds numbers; expected the names of the columns")
     doubled = sorted({name for name in names if name and names.count(name) > 1})
     if doubled:
         raise DataError(f"{file}: row 1: two columns are called {doubled[0]!r}; names must differ")
     return tuple(names)
-
-
-def is_number(text: str) -> bool:
-    """Whether a text is a number as Python writes it."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def no_rows(file: str) -> DataError:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+
+from fuzzytrack.numerals import as_number
 
 __all__ = ["DELIMITERS", "MISSING", "PLAIN", "TextForm"]
 
@@ -80,7 +81,8 @@ class TextForm:
     @cached_property
     def missing_numbers(self) -> tuple[float, ...]:
         """Numbers that stand for a missing one."""
-        return tuple(value for value in map(_number, self.na) if math.isfinite(value))
+        found = (as_number(token.strip()) for token in self.na)
+        return tuple(value for value in found if value is not None)
 
 
 def _texts(argument: str, values: object) -> tuple[str, ...]:
@@ -89,13 +91,6 @@ def _texts(argument: str, values: object) -> tuple[str, ...]:
         if all(isinstance(each, str) for each in found):
             return found
     raise ValueError(f"{argument}: must be several texts, got {values!r}")
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
 
 
 #: The form of a file of which nothing is known.

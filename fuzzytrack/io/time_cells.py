@@ -7,7 +7,6 @@ fast one of many cells, which gives up (None) where the slow one has to look at 
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Sequence
 from datetime import date, timedelta
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
+from fuzzytrack.numerals import as_number
 
 __all__ = [
     "SCALES",
@@ -222,13 +222,7 @@ def _offset(zone: str | None) -> int:
 
 
 def _is_number(text: str) -> bool:
-    # Python would also take 1_000 and digits of other scripts.
-    if not text.isascii() or "_" in text:
-        return False
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
+    return as_number(text.strip()) is not None
 
 
 # -------------------------------------------------------------------- many cells

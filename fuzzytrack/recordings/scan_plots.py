@@ -18,7 +18,8 @@ from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.plot_files import ROWS, PlotFiles, opened
 from fuzzytrack.io.readers import reader_of
 from fuzzytrack.io.reading import Reading
-from fuzzytrack.io.table import is_number, no_rows
+from fuzzytrack.io.table import no_rows
+from fuzzytrack.numerals import is_number
 from fuzzytrack.recordings.antenna_turn import antenna_of
 from fuzzytrack.recordings.preparation import inputs_of
 from fuzzytrack.recordings.radar_place import RadarPlace

@@ -17,6 +17,7 @@ from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.gains.period import poles_in_time
 from fuzzytrack.normalizations import Normalization, normalizations
+from fuzzytrack.numerals import is_number
 from fuzzytrack.schedulers.gain_outputs import (
     GAIN_SETTINGS,
     ConvertedOutputs,
@@ -25,7 +26,7 @@ from fuzzytrack.schedulers.gain_outputs import (
     find_converted_outputs,
     numbers_of,
 )
-from fuzzytrack.yamltree import is_number, suggestion
+from fuzzytrack.yamltree import suggestion
 
 __all__ = [
     "KEYS",

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.errors import FileError, ScenarioError
+from fuzzytrack.numerals import is_number
 from fuzzytrack.simulation.scenario import FieldSensors, PlotNoise, Scenario
-from fuzzytrack.yamltree import Document, Node, is_number
+from fuzzytrack.yamltree import Document, Node
 from fuzzytrack.yamltree import Mapping as MappingNode
 from fuzzytrack.yamltree import Sequence as ListNode
 from fuzzytrack.yamlvalues import Value, remove_value, set_value

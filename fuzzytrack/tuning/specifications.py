@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 from fuzzytrack import specs
 from fuzzytrack.gains import kalata
+from fuzzytrack.numerals import is_number
 from fuzzytrack.trackers.base import Tracker
 from fuzzytrack.trackers.catalog import make_tracker, tracker_parameters
 from fuzzytrack.tuning.candidates import Candidates, Choice, chosen
 from fuzzytrack.tuning.parameters import Numbers, Parameter, Space
-from fuzzytrack.yamltree import is_number
 
 __all__ = ["KALATA", "FreeNumber", "Specification", "specification", "specification_families"]
 

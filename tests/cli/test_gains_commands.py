@@ -187,7 +187,7 @@ def test_design_of_nothing_is_on_the_edge(run):
         ("certify chan-style --steps 4", "error: --steps: expected LOW:HIGH, two times, got '4'"),
         ("certify chan-style --steps 4:1", "error: --steps: must be two times with 0 < shortest"),
         ("certify chan-style --steps 0:1", "<= longest, got 0 and 1"),
-        ("certify chan-style --steps 1:inf", "<= longest, got 1 and inf"),
+        ("certify chan-style --steps 1:inf", "expected LOW:HIGH, two times, got '1:inf'"),
         ("certify chan-style --missed -1", "error: --missed: must be 0 to 1000, got -1"),
         ("certify chan-style --missed 1.5", "--missed"),
     ],

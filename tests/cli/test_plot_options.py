@@ -91,7 +91,7 @@ def test_format_and_order():
         (["--site", "60,east"], "--site: expected numbers with commas between them"),
         (["--site", "60,inf"], "--site: expected numbers with commas between them"),
         (["--sigma", "0"], "--sigma must be > 0, got 0"),
-        (["--sigma", "inf"], "--sigma must be > 0, got inf"),
+        (["--sigma", "inf"], "--sigma: no column 'inf'"),
         (["--valid", "x"], "--valid: expected NAME=VALUE"),
         (["--valid", "x=1"], "--valid: expected COL=LOW:HIGH, got 'x=1'"),
         (["--valid", "x=2:1"], "--valid: expected COL=LOW:HIGH, got 'x=2:1'"),

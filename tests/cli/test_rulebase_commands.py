@@ -182,8 +182,8 @@ def test_explain_outside_and_silent(run, csv):
     [
         ("E=.3", "needs dE too"),
         ("E=.3,de=1", "no such input 'de'; did you mean 'dE'"),
-        ("E=.3,dE=x", "dE must be a number, got 'x'"),
-        ("E=.3,dE=nan", "dE must be a number"),
+        ("E=.3,dE=x", "dE must be a finite number, got 'x'"),
+        ("E=.3,dE=nan", "dE must be a finite number"),
         ("E=.3,E=.4", "'E' is given twice"),
         ("E", "expected NAME=VALUE"),
         ("", "expected NAME=VALUE"),

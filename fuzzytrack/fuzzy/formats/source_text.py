@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from fuzzytrack.errors import Location, RuleBaseError
+from fuzzytrack.numerals import as_number
 from fuzzytrack.yamltree import quoted
 
 __all__ = ["MAX_BYTES", "SourceText", "located"]
@@ -18,7 +18,6 @@ MAX_BYTES = 1024 * 1024
 _LARGEST = 1e100
 
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufeff]")
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 
 
 class SourceText:
@@ -83,8 +82,8 @@ class SourceText:
         role : str
             What it is, for messages.
         """
-        value = float(word) if _NUMBER.fullmatch(word) else math.nan
-        if not abs(value) <= _LARGEST:
+        value = as_number(word)
+        if value is None or abs(value) > _LARGEST:
             raise RuleBaseError(
                 f"{role}: {quoted(word)} must be a finite number up to 1e100", place
             )

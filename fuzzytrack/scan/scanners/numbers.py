@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from fuzzytrack.numerals import is_number
 from fuzzytrack.scan.part import Parameter, Part, Word, declared
 from fuzzytrack.scan.scanners.reader import Configuration
-from fuzzytrack.yamltree import is_number, suggestion
+from fuzzytrack.yamltree import suggestion
 
 __all__ = ["declarations", "values", "with_values"]
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from fuzzytrack.errors import in_one_sentence
+from fuzzytrack.numerals import is_number
 from fuzzytrack.plugins import Registry
 from fuzzytrack.reprs import constructor_code
 from fuzzytrack.scan.part import Parameter, Part, Word, declared
-from fuzzytrack.yamltree import Document, Node, Scalar, is_number, quoted, suggestion
+from fuzzytrack.yamltree import Document, Node, Scalar, quoted, suggestion
 
 __all__ = ["FORMAT_VERSION", "NONE", "PART", "SENSOR", "Configuration", "Roles", "ScannerReader"]
 
