@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,6 +37,11 @@ _WIDTH = 6.4
 _POINTS = 200_000
 # Plots that were not used are drawn up to this part of the picture beyond the rest.
 _BEYOND = 0.25
+# A time between two steps that is so many times longer than usual is a gap: where the track was
+# meanwhile is not known.
+_GAP = 5.0
+# How the ends of a gap are joined.
+_OVER_GAPS: dict[str, Any] = {"linestyle": ":", "linewidth": 0.8, "zorder": 2.7}
 
 
 def plot_track(
@@ -82,9 +88,9 @@ def plot_track(
     Notes
     -----
     After Llinas et al. (1998), Fig. 5.1. Start and end of the track are marked, positions without a
-    plot, and plots that were not used because a gate rejected them. Tracks of more than 75 steps
-    are drawn as lines with faint plots and without predictions, and more than 20,000 plots by their
-    density.
+    plot, and plots that were not used because a gate rejected them. Over a time that is more than five
+    times longer than usual a line is dotted. Tracks of more than 75 steps are drawn as lines with
+    faint plots and without predictions, and more than 20,000 plots by their density.
     """
     place = place_of(result, track)
     shown = ShownTracks.one(result, place)
@@ -294,6 +300,7 @@ class _Picture:
         if len(shown) == 1:
             if on.known(shown.filtered).any():
                 ax.plot(*self._line(on, 0), label="filtered", **style)
+                self._join(ax, on, [style["color"]])
             return
         lines = [self._line(on, track) for track in range(len(shown))]
         colors = track_colors(len(shown))
@@ -301,11 +308,24 @@ class _Picture:
             for id, color, line in zip(shown.ids, colors, lines, strict=True):
                 # A label that begins with an underscore would not be in the legend.
                 ax.plot(*line, label=shown_id(id), **{**style, "color": color})
+            self._join(ax, on, colors)
             return
         width = 0.9 if len(shown) < 200 else 0.6
         points = [np.stack(line, axis=1) for line in lines]
         ax.add_collection(LineCollection(points, colors=colors, linewidths=width, zorder=2.8))
+        self._join(ax, on, colors)
         ax.autoscale_view()
+
+    def _join(self, ax: Axes, on: _Coordinates, colors: Sequence[Any]) -> None:
+        """Join the ends of all gaps, in the color of each track."""
+        joints, their = [], []
+        for track, color in enumerate(colors):
+            rows = self.shown.rows(track)
+            found = on.cut(rows).joints(self.shown.filtered[rows])
+            joints += list(found)
+            their += [color] * len(found)
+        if joints:
+            ax.add_collection(LineCollection(joints, colors=their, label="_gaps", **_OVER_GAPS))
 
     def _line(self, on: _Coordinates, track: int) -> tuple[Array, Array]:
         """Line of a track, with fewer points where there are too many of them to be seen."""
@@ -415,12 +435,30 @@ class _Coordinates:
         return np.isfinite(across) & np.isfinite(up)
 
     def line(self, positions: Array) -> tuple[Array, Array]:
-        """Those of a line, interrupted where an angle passes from a full circle to 0."""
+        """Those of a line, interrupted at gaps, and where an angle passes from 360° to 0."""
         across, up = self.of(positions)
-        if self.period is None:
-            return across, up
-        jumps = np.flatnonzero(np.abs(np.diff(up)) > self.period / 2) + 1
-        return np.insert(across, jumps, np.nan), np.insert(up, jumps, np.nan)
+        breaks = np.flatnonzero(self._gaps() | self._jumps(up)) + 1
+        return np.insert(across, breaks, np.nan), np.insert(up, breaks, np.nan)
+
+    def joints(self, positions: Array) -> Array:
+        """First and second end of each gap that can be joined, shape (n, 2, 2)."""
+        across, up = self.of(positions)
+        ends = np.stack([across, up], axis=1)
+        gaps = np.flatnonzero(self._gaps() & ~self._jumps(up))
+        joints = np.stack([ends[gaps], ends[gaps + 1]], axis=1)
+        return np.asarray(joints[np.isfinite(joints).all(axis=(1, 2))])
+
+    def _gaps(self) -> Mask:
+        """Whether the time to the next row is a gap; there is none to another part of a track."""
+        steps = np.diff(self.time)
+        known = steps[np.isfinite(steps)]
+        return np.asarray(steps > _GAP * np.median(known)) if len(known) else steps > np.inf
+
+    def _jumps(self, up: Array) -> Mask:
+        """Whether an angle passes from a full circle to 0, or back, before the next row."""
+        return np.asarray(
+            np.abs(np.diff(up)) > (np.inf if self.period is None else self.period / 2)
+        )
 
     def cut(self, rows: slice) -> _Coordinates:
         """The same for some rows."""

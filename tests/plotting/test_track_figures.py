@@ -4,7 +4,7 @@ from drawn_lines import lines
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from fuzzytrack.plotting import plot_track
+from fuzzytrack.plotting import plot_track, plot_tracks
 
 
 def test_two_axes_are_a_plane_of_equal_scales(result, flight):
@@ -179,3 +179,29 @@ def test_wrong_arguments(call, message, result, batch, flight):
     with pytest.raises(ValueError, match=message):
         call(result, batch, flight[1])
     assert plt.get_fignums() == []
+
+
+@pytest.mark.parametrize("steps", [12, 200])
+def test_a_track_is_dotted_over_a_gap(tracker, steps):
+    t = np.arange(steps, dtype=float)
+    t[5:] += 4.0
+    t[9:] += 40.0
+    z = np.stack([t, -t], axis=1)
+    result = tracker.run(t, z)
+    _, ax = plot_track(result, z)
+    # Five steps are no gap yet, 41 are.
+    for name, drawn in (("filtered", result.filtered), ("true", z)):
+        expected = np.insert(drawn, 9, np.nan, axis=0)
+        np.testing.assert_array_equal(lines(ax)[name], expected)
+    (gaps,) = ax.collections
+    np.testing.assert_array_equal(gaps.get_segments(), [result.filtered[8:10]])
+    assert gaps.get_linestyle()[0][1] is not None
+
+
+@pytest.mark.filterwarnings("ignore::fuzzytrack.errors.TrackWarning")
+def test_nothing_joins_the_ends_of_a_gap_in_which_an_angle_passes_north(tracker):
+    t = np.array([0.0, 1, 2, 3, 40, 41, 42, 80, 81])
+    angle = np.array([350.0, 352, 354, 356, 2, 4, 6, 20, 22])
+    _, ax = plot_tracks([tracker.run(t, angle)], period=360.0, unit="deg")
+    (gaps,) = ax.collections
+    np.testing.assert_array_equal(np.array(gaps.get_segments())[:, :, 0], [[42.0, 80.0]])
