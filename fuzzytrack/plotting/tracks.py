@@ -88,9 +88,9 @@ def plot_track(
     Notes
     -----
     After Llinas et al. (1998), Fig. 5.1. Start and end of the track are marked, positions without a
-    plot, and plots that were not used because a gate rejected them. Over a time that is more than five
-    times longer than usual a line is dotted. Tracks of more than 75 steps are drawn as lines with
-    faint plots and without predictions, and more than 20,000 plots by their density.
+    plot, and plots that were not used because a gate rejected them. A line is dotted over a time
+    that is more than five times longer than usual. Tracks of more than 75 steps are drawn as lines
+    with faint plots and without predictions, and more than 20,000 plots by their density.
     """
     place = place_of(result, track)
     shown = ShownTracks.one(result, place)
