@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import errno
+import glob
 import os
 import secrets
 import shutil
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from fuzzytrack.errors import DataError
@@ -119,7 +121,7 @@ def whole_file(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Iterator[Pa
         See `check_output`.
     """
     target = check_output(path, inputs)
-    draft = target.with_name(f".{target.stem}.{secrets.token_hex(4)}.part{target.suffix}")
+    draft = _draft_of(target, target.stem, target.suffix)
     try:
         with _full_disk_named(path):
             yield draft
@@ -128,6 +130,21 @@ def whole_file(path: PathLike, inputs: tuple[PathLike, ...] = ()) -> Iterator[Pa
         os.replace(draft, target)
     finally:
         draft.unlink(missing_ok=True)
+
+
+# Seconds after the last write to a draft from which on it is taken for one that was left behind.
+_STALE = 86_400.0
+
+
+def _draft_of(target: Path, stem: str, suffix: str = "") -> Path:
+    """A new name beside a file or folder; drafts that a killed run has left of it are removed."""
+    pattern = f".{glob.escape(stem)}.{'[0-9a-f]' * 8}.part{glob.escape(suffix)}"
+    for left in target.parent.glob(pattern):
+        with suppress(OSError):
+            written = max(os.stat(each).st_mtime for each in (left, *left.rglob("*")))
+            if time.time() - written > _STALE:
+                shutil.rmtree(left) if left.is_dir() else left.unlink()
+    return target.with_name(f".{stem}.{secrets.token_hex(4)}.part{suffix}")
 
 
 # Of a write where there is no room: on the disk, for the user, in a file of this kind.
@@ -167,7 +184,7 @@ def whole_folder(path: PathLike) -> Iterator[Path]:
         See `check_output_folder`.
     """
     target = check_output_folder(path)
-    draft = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+    draft = _draft_of(target, target.name)
     draft.mkdir()
     try:
         with _full_disk_named(path):

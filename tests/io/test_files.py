@@ -53,3 +53,34 @@ def test_a_full_disk_is_said_of_the_file(tmp_path, whole):
         raise OSError(errno.EIO, "Input/output error", "plots.csv")
     assert caught.value.filename == "plots.csv"
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("whole", "name", "left"),
+    [
+        (whole_file, "a[1].csv", ".a[1].0123abcd.part.csv"),
+        (whole_folder, "tracks", ".tracks.0123abcd.part"),
+    ],
+)
+def test_what_a_killed_run_has_left_is_removed_a_day_later(tmp_path, whole, name, left):
+    def make(path, hours):
+        if whole is whole_folder:
+            path.mkdir()
+            inner = written(path, "half", "0.parquet")
+            os.utime(path, (0, 0))
+        else:
+            inner = written(tmp_path, "half", path.name)
+        when = os.stat(inner).st_mtime - 3600 * hours
+        os.utime(inner, (when, when))
+
+    others = (".b.0123abcd.part.csv", left.replace("abcd", "wxyz"))
+    for other in others:
+        make(tmp_path / other, 30)
+    make(tmp_path / left, 30)
+    # Another run may be writing this one.
+    at_work = left.replace("0123", "4567")
+    make(tmp_path / at_work, 20)
+    with whole(tmp_path / name) as draft:
+        if whole is whole_file:
+            draft.write_text("all")
+    assert {path.name for path in tmp_path.iterdir()} == {name, at_work, *others}
