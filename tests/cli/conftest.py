@@ -5,6 +5,7 @@ import pytest
 from typer.testing import CliRunner
 
 from fuzzytrack.cli.app import app
+from fuzzytrack.fuzzy.loading import rulebase_path
 
 
 @pytest.fixture
@@ -58,3 +59,11 @@ def real():
         return folder / name
 
     return find
+
+
+@pytest.fixture
+def mine(tmp_path):
+    """A copy of a shipped rule base, to change."""
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(rulebase_path("stiffness-damping").read_bytes())
+    return path

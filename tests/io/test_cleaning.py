@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from dirty_rows import NAN, cleaned, joined, lines, piece, plots, same, segments
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,64 +15,7 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io import cleaning
 from fuzzytrack.io.cleaning import Cleaner
 from fuzzytrack.io.cleaning_rules import Cleaning, CleaningCounts
-from fuzzytrack.io.piece import Piece
-from fuzzytrack.io.recording import read_tracks
-from fuzzytrack.io.table import Words
 from fuzzytrack.simulation.sampling import PATTERNS
-
-NAN = math.nan
-
-
-def piece(time, plots=None, ids=None, *, cells=None, file="a.csv", first=2):
-    """Rows; the first one stands in line `first` of the file."""
-    time = np.asarray(time, dtype=float)
-    values = np.arange(len(time)) * 10.0 if plots is None else np.asarray(plots, dtype=float)
-    values = values[:, None] if values.ndim == 1 else values
-    words = [""] * len(time) if ids is None else list(ids)
-    names = tuple(dict.fromkeys(words))
-    codes = np.array([names.index(word) for word in words], dtype=np.int64)
-    rows = np.arange(first, first + len(time))
-    return Piece(Words(names, codes), time, values, rows, file, None, cells)
-
-
-def cleaned(rows, period=None, **rules):
-    """All rows as one piece, and the counts."""
-    cleaner = Cleaner(Cleaning(**rules), period)
-    out = [cleaner.advance(rows), cleaner.finish()]
-    return joined([part for part in out if part is not None]), cleaner.counts
-
-
-def joined(parts):
-    """Rows by track and line: id, time, plot and segment of each."""
-    rows = [
-        (part.ids[k], int(part.rows[k]), float(part.time[k]), tuple(part.plots[k].tolist()),
-         int(part.segments[k]))
-        for part in parts
-        for k in range(len(part))
-    ]  # fmt: skip
-    return sorted(rows, key=lambda row: row[:2])
-
-
-def lines(rows):
-    return [row[1] for row in rows]
-
-
-def times(rows):
-    return [row[2] for row in rows]
-
-
-def plots(rows):
-    return [row[3][0] for row in rows]
-
-
-def segments(rows):
-    return [row[4] for row in rows]
-
-
-def same(one, other):
-    """Equal to the last bit, NaN being equal to itself."""
-    return repr(one) == repr(other)
-
 
 # -------------------------------------------------------------------- nothing to do
 
@@ -104,92 +48,6 @@ def test_what_comes_in_is_not_changed():
     Cleaner(Cleaning(stale=9, wrap=5), 5).advance(given)
     assert np.array_equal(given.time, before[0])
     assert np.array_equal(given.plots, before[1])
-
-
-# -------------------------------------------------------------------- copies and equal times
-
-
-def test_exact_copies_of_a_row_are_dropped():
-    rows = piece([0, 1, 1, 2, 0, 2], [0, 10, 10, 20, 5, 20], ["a", "a", "a", "a", "b", "a"])
-    out, counts = cleaned(rows)
-    assert lines(out) == [2, 3, 5, 6]
-    assert counts == CleaningCounts(copies=2)
-    assert counts.sentences() == ("2 exact copies of rows dropped",)
-    missed, counts = cleaned(piece([0, 0, 0], [[NAN, 1], [NAN, 1], [NAN, 1]]))
-    assert lines(missed) == [2]
-    assert counts.copies == 2
-
-
-def test_equal_times_are_an_error_that_names_both_rows_and_the_remedies():
-    with pytest.raises(
-        DataError,
-        match=r"^a\.csv: row 3, column t: time 0 repeats that of row 2; expected times that "
-        r"differ, or `duplicates` .*; if these are several tracks, name the .* \(`id`\)$",
-    ):
-        Cleaner(Cleaning(), column="t").advance(piece([0, 0]))
-    with pytest.raises(DataError, match=r"row 4: time 0 \(id 'a'\) repeats that of row 2; ") as got:
-        cleaned(piece([0, 0, 0], ids="aba"))
-    assert "several tracks" not in str(got.value)
-    cleaner = Cleaner(Cleaning(), show=lambda seconds: f"<{seconds:g}>")
-    cleaner.advance(piece([7]))
-    with pytest.raises(DataError, match=r"b\.csv: row 2: time <7> repeats that of row 2 of a\.csv"):
-        cleaner.advance(piece([7], [5], file="b.csv"))
-
-
-@pytest.mark.parametrize(
-    ("cells", "message"),
-    [
-        (["1e-30", "2e-30"], "in the cell 2e-30 and 1e-30 in row 2 are too close to tell apart"),
-        (["1.0", "1.00"], "repeats"),
-        (["12:00:00", "12:00:00.0"], "repeats"),
-        (np.array([1, 1]), "repeats"),
-    ],
-)
-def test_different_cells_of_equal_times_are_told(cells, message):
-    with pytest.raises(DataError, match=message):
-        cleaned(piece([5, 5], cells=cells))
-
-
-EQUAL = piece([0, 1, 1, 1, 1, 2, 2, 2], [0, NAN, 10, 11, 10, 20, 22, NAN])
-
-
-@pytest.mark.parametrize(
-    ("duplicates", "kept", "values"),
-    [
-        ("first", [2, 4, 7], [0, 10, 20]),
-        ("last", [2, 5, 8], [0, 11, 22]),
-        ("mean", [2, 3, 7], [0, 10.5, 21]),
-    ],
-)
-def test_plots_of_equal_times_become_one(duplicates, kept, values):
-    out, counts = cleaned(EQUAL, duplicates=duplicates)
-    assert lines(out) == kept
-    assert plots(out) == values
-    assert counts == CleaningCounts(copies=1, merged=4)
-    assert counts.sentences()[1] == "4 rows merged with others of equal time"
-
-
-@pytest.mark.parametrize(("unit", "turn"), [("deg", 360.0), ("rad", 2 * math.pi)])
-def test_the_mean_of_bare_angles_is_taken_the_shorter_way(unit, turn, tmp_path):
-    share = np.array([359, 1, 350, 20, 10, 90]) / 360 * turn
-    rows = zip([0, 0, 1, 1, 1, 2], share.tolist(), strict=True)
-    (tmp_path / "a.csv").write_text(
-        f"t,bearing_{unit}\n" + "".join(f"{time},{angle!r}\n" for time, angle in rows)
-    )
-    read = read_tracks(tmp_path / "a.csv", angle=f"bearing_{unit}", duplicates="mean")
-    found = np.exp(2j * math.pi * read.tracks[0].plots[:, 0] / turn)
-    expected = np.exp(2j * math.pi * np.array([0, 20 / 3, 90]) / 360)
-    np.testing.assert_allclose(found, expected, atol=1e-12)
-
-
-def test_the_mean_is_one_of_each_axis_and_of_sigma():
-    rows = piece([0, 0, 0], [[1, NAN], [2, 5], [NAN, NAN]])
-    rows = replace(rows, sigma=np.array([[1.0, NAN], [2.0, 4.0], [NAN, NAN]]))
-    cleaner = Cleaner(Cleaning(duplicates="mean"))
-    assert len(cleaner.advance(rows)) == 0
-    out = cleaner.finish()
-    assert out.plots.tolist() == [[1.5, 5]]
-    assert out.sigma.tolist() == [[1.5, 4]]
 
 
 # -------------------------------------------------------------------- missed plots
@@ -320,102 +178,6 @@ def test_a_near_duplicate_at_the_start_divides_nothing():
     for least_step in (None, 0.2):
         rows = piece([0, 0.01, *range(1, 30)])
         assert cleaned(rows, least_step=least_step)[1].segments == 0
-
-
-# -------------------------------------------------------------------- clocks that start again
-
-
-def wrapped(period, step, count=12, before=6):
-    """Raw times of a clock that starts again after `before` rows."""
-    return np.mod(np.arange(count) * step + period - before * step, period)
-
-
-@pytest.mark.parametrize(
-    ("period", "step"),
-    [(86_400, 4.0), (604_800, 10.0), (2**32 / 1e3, 0.1), (2**32 / 1e6, 0.25)],
-)
-def test_clocks_that_start_again_are_recognized(period, step):
-    out, counts = cleaned(piece(wrapped(period, step)))
-    assert np.diff(times(out)) == pytest.approx([step] * 11, abs=1e-9)
-    assert counts == CleaningCounts(wraps=1, period=period)
-    assert counts.sentences() == (f"the clock starts again after {period:.15g} s, 1 time",)
-
-
-@pytest.mark.parametrize(("rules", "known"), [({"wrap": 60}, None), ({}, 60)])
-def test_a_period_that_is_known_needs_no_intervals(rules, known):
-    out, counts = cleaned(piece([59.5, 0.5, 40, 1]), known, max_gap=None, **rules)
-    assert times(out) == [59.5, 60.5, 100, 121]
-    assert counts == CleaningCounts(wraps=2, period=60)
-
-
-def test_tracks_take_the_turn_of_the_row_before():
-    rows = piece([50, 58, 3, 5, 10, 20], ids="aabcab")
-    out, counts = cleaned(rows, wrap=60)
-    assert [row[::2] for row in out] == [
-        ("a", 50, 0), ("a", 58, 0), ("a", 70, 0), ("b", 63, 0), ("b", 80, 0), ("c", 65, 0),
-    ]  # fmt: skip
-    assert counts.wraps == 1
-    # An id that is used again a turn later, at an earlier time.
-    out, _ = cleaned(piece([20, 30, 59, 1, 15], ids="abbba"), wrap=60)
-    assert [row[2] for row in out if row[0] == "a"] == [20, 75]
-
-
-@pytest.mark.parametrize(
-    ("time", "rules", "message"),
-    [
-        ([0, 1, 2, 1.5], {}, r"row 5: time 1\.5 is earlier than 2 in row 4; expected increasing "
-         r"times; `sort` puts them in order, and `id` names the column that distinguishes tracks$"),
-        (wrapped(86_400, 4), {"wrap": None}, r"row 8: time 0 is earlier than 86396 in row 7.*; "
-         r"if its clock starts again \(it falls by 86396 s\), `wrap` is its period$"),
-        # A recording that was started again is no clock with a period.
-        ([*range(500), *range(9)], {}, "row 502: time 0 is earlier than 499 in row 501.*`wrap`"),
-        ([86_399, 0], {}, "row 3: time 0 is earlier than 86399 in row 2.*`wrap`"),
-        # Out of order about midnight.
-        ([86398, 86399, 0, 1, 86399.5, 2], {"wrap": 86_400}, "row 6.*86399.5 is earlier than"),
-        ([10, 20, 15], {"wrap": 60}, "row 4: time 15 is earlier than 20 in row 3"),
-        ([100, 5], {"wrap": 60}, "is earlier than"),
-    ],
-)  # fmt: skip
-def test_other_times_that_fall_are_an_error(time, rules, message):
-    with pytest.raises(DataError, match=message):
-        cleaned(piece(time), **rules)
-
-
-@settings(max_examples=60)
-@given(
-    st.sampled_from([60.0, 86_400.0]),
-    st.lists(st.integers(1, 14), min_size=2, max_size=40),
-    st.integers(0, 59),
-)
-def test_time_of_any_number_of_turns_is_restored(period, steps, start):
-    true = start + np.cumsum(steps).astype(float)
-    raw = np.mod(true, period)
-    out, counts = cleaned(piece(raw), wrap=period, max_gap=None)
-    assert np.diff(times(out)).tolist() == np.diff(true).tolist()
-    assert counts.wraps == true[-1] // period - true[0] // period
-
-
-@settings(max_examples=60)
-@given(st.permutations(range(12)), st.sampled_from([{}, {"wrap": 86_400}]))
-def test_rows_out_of_order_about_midnight_are_sorted(order, rules):
-    # Local disorder: each row moves by one or two places.
-    places = sorted(range(12), key=lambda k: k + 2.5 * (order[k] % 2))
-    rows = piece(wrapped(86_400, 4)).take(np.array(places))
-    cleaner = Cleaner(Cleaning(**rules))
-    out = cleaner.advance(cleaner.in_order(rows))
-    assert plots(joined([out])) == [10.0 * k for k in range(12)]
-    assert np.diff(out.time).tolist() == [4] * 11
-    assert cleaner.counts == CleaningCounts(wraps=1, period=86_400)
-
-
-def test_tracks_are_sorted_each_by_itself():
-    rows = piece([3, 1, 2, 0, 1], [30, 1, 20, 0, 10], ids="abaaa")
-    cleaner = Cleaner(Cleaning())
-    out = cleaner.advance(cleaner.in_order(rows))
-    assert [out.ids[k] for k in range(5)] == list("aaaab")
-    assert out.plots.ravel().tolist() == [0, 10, 20, 30, 1]
-    assert cleaner.counts == CleaningCounts()
-    assert len(Cleaner(Cleaning(wrap=60)).in_order(piece([]))) == 0
 
 
 # -------------------------------------------------------------------- any pieces, any way
@@ -620,16 +382,3 @@ def test_a_segment_begins_after_a_hundred_mean_intervals(steps, factor):
     _, counts = cleaned(piece([*time, time[-1] + gap]))
     if abs(factor - 100) > 1e-6:
         assert counts.segments == (factor > 100)
-
-
-@given(
-    st.lists(st.lists(st.floats(-9, 9), min_size=1, max_size=4), min_size=1, max_size=9),
-    st.sampled_from(["first", "last", "mean"]),
-)
-def test_equal_times_become_one_plot_by_the_rule(groups, duplicates):
-    groups = [list(dict.fromkeys(group)) for group in groups]
-    time = [float(k) for k, group in enumerate(groups) for _ in group]
-    out, counts = cleaned(piece(time, np.concatenate(groups)), duplicates=duplicates)
-    rule = {"first": lambda g: g[0], "last": lambda g: g[-1], "mean": np.mean}[duplicates]
-    assert plots(out) == pytest.approx([rule(group) for group in groups])
-    assert counts == CleaningCounts(merged=sum(map(len, groups)) - len(groups))
