@@ -15,7 +15,7 @@ from fuzzytrack.cli import options
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.numerals import as_number
 from fuzzytrack.recordings.judging import GateWidth
-from fuzzytrack.recordings.scan_plots import OF_TRACKS
+from fuzzytrack.recordings.scan_options import OF_TRACKS
 
 __all__ = ["gate_width", "number_or", "plot_reading", "reads_plots", "reads_scans"]
 

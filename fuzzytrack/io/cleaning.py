@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzytrack.arrays import Array
-from fuzzytrack.errors import DataError
 from fuzzytrack.io import cleaning_step
 from fuzzytrack.io.cleaning_rules import Cleaning, CleaningCounts
 from fuzzytrack.io.cleaning_step import OWN, clean_rows
 from fuzzytrack.io.equal_times import EqualTimes
-from fuzzytrack.io.piece import Piece, check_finite, place_of
-from fuzzytrack.io.time_cells import same_time
+from fuzzytrack.io.file_order import recognized_period, turned, turns_in_file
+from fuzzytrack.io.piece import Piece, check_finite
+from fuzzytrack.io.time_errors import time_error
 from fuzzytrack.reprs import summary
 
 __all__ = ["Cleaner", "JudgedRows"]
@@ -33,8 +33,6 @@ __all__ = ["Cleaner", "JudgedRows"]
 # regular, with jitter, 1:10, in near-duplicate pairs, in bursts of 5 with gaps of 20 or 100, or
 # log-uniform over 1:100, were not divided, at detection probabilities from 1 down to 0.3.
 _GAP_FACTOR, _GAP_INTERVALS = 100.0, 8
-# A fall of the time by more mean intervals is no local disorder.
-_DISORDER = 20.0
 # Compiling, or reading compiled code, takes longer than fewer rows in plain Python.
 _COMPILE_ABOVE = 100_000
 _PLAIN_BELOW = 2_000
@@ -298,11 +296,11 @@ class Cleaner:
         codes, time = piece.ids.codes, piece.time
         period = float(self._clock[cleaning_step.PERIOD])
         if period == 0 and self.cleaning.wrap == "auto":
-            period = _recognized(piece)
+            period = recognized_period(piece)
         if period > 0 and len(piece):
-            turns = _turns_in_file(time, period)
+            turns = turns_in_file(time, period)
             time = time + turns * period
-            self._period, self._sorted_wraps = period, _turned(codes, turns)
+            self._period, self._sorted_wraps = period, turned(codes, turns)
         # The cleaner must not turn the clock once more.
         self._clock[cleaning_step.PERIOD] = self._rules[cleaning_step.RECOGNIZE] = 0.0
         # Stable: the order of the file within a track.
@@ -326,7 +324,9 @@ class Cleaner:
             return replace(piece, segments=np.zeros(0, dtype=np.int64))
         found, wrong, now = self._judged(piece)
         if wrong >= 0:
-            raise self._time_error(piece, wrong, now)
+            track = self._state[self._slot[piece.ids[wrong]]]
+            file = self._files[int(track[cleaning_step.FILE])]
+            raise time_error(piece, wrong, now, track, file, self._column, self._show)
         return found.cleaned
 
     def _judged(self, piece: Piece) -> tuple[JudgedRows, int, float]:
@@ -410,98 +410,6 @@ class Cleaner:
             slots, time, np.ascontiguousarray(rows, dtype=np.int64), plots.ravel(), plots.shape[1],
             self._file, self._rules, self._clock, self._state.ravel(), kept, segments,
         )  # fmt: skip
-
-    # ---------------------------------------------------------------- messages
-
-    def _time_error(self, piece: Piece, place: int, now: float) -> DataError:
-        """Error about a row whose time, `now`, is not later than that of the row before."""
-        track = self._state[self._slot[piece.ids[place]]]
-        id = piece.ids[place]
-        whose = f" (id {id!r})" if id else ""
-        before = f"row {int(track[cleaning_step.ROW])}"
-        file = self._files[int(track[cleaning_step.FILE])]
-        if file != piece.file:
-            before += f" of {file}"
-        time = float(piece.time[place])
-        fall = float(track[cleaning_step.TIME]) - now
-        if fall == 0:
-            what = _repeats(piece, place, before, id)
-        else:
-            what = (
-                f"is earlier than {self._show(time + fall)} in {before}; expected increasing times"
-                f"{self._remedies(fall, track, bool(id))}"
-            )
-        where = f"{place_of(piece, place)}{self._column and f', column {self._column}'}"
-        return DataError(f"{where}: time {self._show(time)}{whose} {what}")
-
-    def _remedies(self, fall: float, track: Array, identified: bool) -> str:
-        intervals = track[cleaning_step.INTERVALS]
-        # As Python's number, which is infinite without a warning.
-        mean = float(track[cleaning_step.SUM] / intervals) if intervals else 0.0
-        remedies = "; `sort` puts them in order"
-        if not identified:
-            remedies += ", and `id` names the column that distinguishes tracks"
-        if fall > _DISORDER * mean:
-            remedies += (
-                f"; if its clock starts again (it falls by {fall:.15g} s), `wrap` is its period"
-            )
-        return remedies
-
-
-def _repeats(piece: Piece, place: int, before: str, id: str) -> str:
-    """What is wrong with a time that equals the one before, and what to do."""
-    cells, codes = piece.time_cells, piece.ids.codes
-    earlier = np.flatnonzero(codes[:place] == codes[place])
-    if cells is not None and len(earlier):
-        one, other = str(cells[earlier[-1]]).strip(), str(cells[place]).strip()
-        if not same_time(one, other):
-            return (
-                f"in the cell {other} and {one} in {before} are too close to tell apart in double "
-                "precision; expected times further apart"
-            )
-    # Several tracks in one file look like this when their identities are not read, or not known.
-    mend = ""
-    if not id:
-        mend = "; if these are several tracks, name the column of their id (`id`)"
-    elif id == "-1":
-        mend = "; if the id -1 says that there is none, find out first which plot is of which track"
-    return (
-        f"repeats that of {before}; expected times that differ, or `duplicates` to say which plot "
-        f"counts{mend}"
-    )
-
-
-def _turns_in_file(time: Array, period: float) -> Array:
-    """How often a clock has started again before each row, from row to row of a file.
-
-    Times that fall by less than a quarter of the period are out of order; so are those that rise by
-    more than three quarters.
-    """
-    turns = np.zeros(len(time))
-    turns[1:] = np.cumsum(-np.floor(np.diff(time) / period + 0.25))
-    return turns
-
-
-def _recognized(piece: Piece) -> float:
-    """Period of a clock that starts again in some track; 0 if none is recognized."""
-    order = np.argsort(piece.ids.codes, kind="stable")
-    steps = np.diff(piece.time[order])[np.diff(piece.ids.codes[order]) == 0]
-    falls, usual = -steps[steps < 0], steps[steps > 0]
-    if not len(falls) or not len(usual):
-        return 0.0
-    plausible = _DISORDER * float(np.median(usual))
-    for period in cleaning_step.PERIODS:
-        if ((falls < period) & (falls >= period - plausible)).any():
-            return period
-    return 0.0
-
-
-def _turned(codes: NDArray[np.int64], turns: Array) -> int:
-    """How often the clock has started again within tracks, together."""
-    order = np.lexsort((turns, codes))
-    first = np.append(True, np.diff(codes[order]) != 0)
-    last = np.append(first[1:], True)
-    return int((turns[order[last]] - turns[order[first]]).sum())
 
 
 @cache

@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 
 from fuzzytrack.errors import DataError
-from fuzzytrack.io.cleaning_rules import Cleaning
 from fuzzytrack.io.column_names import plain_name
 from fuzzytrack.io.columns import known
 from fuzzytrack.io.decoder import PlotDecoder, is_latitude
 from fuzzytrack.io.files import PathLike
 from fuzzytrack.io.plot_files import ROWS, PlotFiles, opened
-from fuzzytrack.io.readers import reader_of
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.table import no_rows
 from fuzzytrack.numerals import is_number
@@ -27,6 +25,12 @@ from fuzzytrack.recordings.scan_cut import ScanCut
 from fuzzytrack.recordings.scan_findings import ScanFindings
 from fuzzytrack.recordings.scan_gathering import GatheringRules, ScanGathering
 from fuzzytrack.recordings.scan_list import ScanList, own_columns
+from fuzzytrack.recordings.scan_options import (
+    check_plots,
+    check_sectors,
+    checked,
+    without_identities,
+)
 from fuzzytrack.recordings.scan_order import CountedOn, RowOrder
 from fuzzytrack.recordings.scan_rhythm import period_doubt, recognize_scans
 from fuzzytrack.recordings.scan_rows import RowColumns, ScanRows, read_rows
@@ -34,19 +38,12 @@ from fuzzytrack.reprs import summary
 from fuzzytrack.scan.scan import UNKNOWN_PLACE, Scan
 from fuzzytrack.tasks import Progress
 
-__all__ = ["OF_TRACKS", "ScanPlots", "scans_of"]
-
-#: Rules about single tracks, which plots without identities do not have.
-OF_TRACKS = ("duplicates", "stale", "least_step", "max_gap", "max_coast")
+__all__ = ["ScanPlots", "scans_of"]
 
 # Names of columns that say which scan a plot belongs to.
 _SCANS = ("scan", "scan_number", "scan_no", "scan_id", "sweep", "sweep_number", "frame")
 # Rows that show how the radar makes its scans.
 _FIRST = 5_000
-# Turns of an antenna (s), and times from scan to scan.
-_LEAST_PERIOD, _MOST_PERIOD = 0.001, 86_400
-# Sectors of a turn: the tracks in one need the plots of its neighbors on both sides.
-_LEAST_SECTORS, _MOST_SECTORS = 4, 1024
 
 
 @dataclass(frozen=True)
@@ -109,7 +106,7 @@ class ScanPlots:
         plots : path, data frame, mapping or tuple
             As for `fuzzytrack.track`.
         reading : Reading, optional
-            How it is read, without the options `OF_TRACKS`. Identities are not used.
+            How it is read, without those of `scan_options.OF_TRACKS`. Identities are not used.
         scan : str, optional
             Column in which plots of one scan have the same word or number.
         period : float, optional
@@ -141,12 +138,12 @@ class ScanPlots:
         OSError
             If a file cannot be read.
         """
-        reading = _checked(reading or Reading(), period, lateness, scan)
-        _check_sectors(sectors, scan, scans)
+        reading = checked(reading or Reading(), period, lateness, scan)
+        check_sectors(sectors, scan, scans)
         # An open source is one of a live feed.
         inputs = (plots,) if hasattr(plots, "tables") else inputs_of(plots)
-        files = PlotFiles.of(inputs, _without_identities(inputs[0], reading), identified=False)
-        _check_plots(files.decoder, files.names[0])
+        files = PlotFiles.of(inputs, without_identities(inputs[0], reading), identified=False)
+        check_plots(files.decoder, files.names[0])
         radar = _radar(files, own, sectors)
         still = _is_place(own)
         own = None if still else own
@@ -354,71 +351,6 @@ def scans_of(plots: Any, reading: Reading | None = None, **options: Any) -> Iter
 
 
 # -------------------------------------------------------------------- what is asked for
-
-
-def _checked(
-    reading: Reading, period: float | None, lateness: float | None, scan: str | None
-) -> Reading:
-    """Reading without options that plots without identities cannot have."""
-    if period is not None and not _LEAST_PERIOD <= period <= _MOST_PERIOD:
-        raise ValueError(
-            f"period: must be from {_LEAST_PERIOD} to {_MOST_PERIOD} s, got {period!r}; it is the "
-            "time of a turn of the antenna"
-        )
-    if lateness is not None and not 0 <= lateness < math.inf:
-        raise ValueError(f"lateness: must be a number of seconds >= 0, got {lateness!r}")
-    if period is not None and scan is not None:
-        raise ValueError("scan and period: both say what a scan is; give one of them")
-    usual = Cleaning()
-    for name in OF_TRACKS:
-        if getattr(reading.cleaning, name) != getattr(usual, name):
-            raise ValueError(
-                f"{name}: is about plots of one track; plots of a scan have none yet; leave it out"
-            )
-    if reading.description.sigma == "auto":
-        raise ValueError(
-            "sigma: cannot be estimated from plots without identities; give numbers or columns, or "
-            "leave it out: the configuration has the noise of its radar"
-        )
-    return reading
-
-
-def _check_sectors(sectors: int | None, scan: str | None, scans: PathLike | None) -> None:
-    if sectors is None:
-        return
-    if not _LEAST_SECTORS <= sectors <= _MOST_SECTORS:
-        raise ValueError(
-            f"sectors: must be from {_LEAST_SECTORS} to {_MOST_SECTORS}, got {sectors}"
-        )
-    for name, value in (("scan", scan), ("scans", scans)):
-        if value is not None:
-            raise ValueError(f"{name} and sectors: sectors follow the antenna; give one of them")
-
-
-def _without_identities(first: Any, reading: Reading) -> Reading:
-    """Reading in which records of ASTERIX need no identity."""
-    from fuzzytrack.io.asterix import Asterix
-
-    said = reading.format
-    if said is None and isinstance(first, str) and first != "-":
-        said = "asterix" if isinstance(reader_of(first), Asterix) else None
-    if said is not None and said.split(":")[0] == "asterix" and "identity=" not in said:
-        mark = "," if ":" in said else ":"
-        return replace(reading, format=f"{said}{mark}identity=none")
-    return reading
-
-
-def _check_plots(decoder: PlotDecoder, file: str) -> None:
-    columns = decoder.columns
-    if len(columns.axes) < 2:
-        raise DataError(
-            f"{file}: column {', '.join(columns.read)}: plots of a scan have two coordinates; name "
-            "both with `axes`, `polar` or `geodetic`"
-        )
-    if decoder.noise_is_polar and any(decoder.noise[:2]) and None in decoder.noise:
-        raise ValueError(
-            "sigma_range and sigma_azimuth: give both (and that of elevation), or none"
-        )
 
 
 def _columns(
