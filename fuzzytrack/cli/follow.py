@@ -7,10 +7,14 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Timer
+from typing import Annotated
+
+import typer
 
 from fuzzytrack.cli.complaints import printable
 from fuzzytrack.cli.live_run import LiveRun, SavedState
 from fuzzytrack.cli.noise_words import noise_sentence
+from fuzzytrack.cli.options import LIVE, FeedWay, StateFile
 from fuzzytrack.cli.output import say_aside, say_notes
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT
 from fuzzytrack.io.byte_stream import STANDARD_INPUT
@@ -25,7 +29,7 @@ from fuzzytrack.recordings.live import LiveTracks
 from fuzzytrack.recordings.live_feed import LiveFeed
 from fuzzytrack.recordings.live_state import LiveState
 
-__all__ = ["FollowOptions", "follow"]
+__all__ = ["FollowOptions", "follow", "follow_options"]
 
 # Seconds from which on a compilation is told of.
 _LONG = 2.0
@@ -62,6 +66,52 @@ class FollowOptions:
         self.saved.check_unused()
         if not self.compiled:
             raise ValueError("--no-compile: is for a live feed; give --follow as well")
+
+
+def follow_options(
+    follow: Annotated[
+        bool,
+        typer.Option(
+            "--follow",
+            help="Read lines from standard input, and answer each at once.",
+            rich_help_panel=LIVE,
+        ),
+    ] = False,
+    lateness: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            help="With --follow, put plots up to S seconds late in place. [default: 0]",
+            rich_help_panel=LIVE,
+        ),
+    ] = None,
+    forget: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            help="With --follow, forget tracks silent for S seconds.",
+            rich_help_panel=LIVE,
+        ),
+    ] = None,
+    state: StateFile = None,
+    feed: FeedWay = None,
+    compiled: Annotated[
+        bool,
+        typer.Option(
+            "--compile/--no-compile",
+            help="With --follow, compile before answering.",
+            rich_help_panel=LIVE,
+        ),
+    ] = True,
+) -> FollowOptions | None:
+    """Options of a live run; None without --follow, and then none of the others may be given."""
+    found = FollowOptions(
+        lateness=lateness, forget=forget, saved=SavedState(state, feed), compiled=compiled
+    )
+    if follow:
+        return found
+    found.check_unused()
+    return None
 
 
 def follow(

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 import math
-from collections.abc import Callable
-from copy import copy
-from functools import wraps
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any
 
 import typer
 
 from fuzzytrack.cli import options
+from fuzzytrack.cli.option_groups import changed, grouped
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.numerals import as_number
 from fuzzytrack.recordings.judging import GateWidth
@@ -182,49 +179,17 @@ def plot_reading(
     )
 
 
-def reads_plots(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of `plot_reading`, in place of its argument ``reading``."""
-    return _with_options(command, dict(inspect.signature(plot_reading, eval_str=True).parameters))
+#: Gives a command these options, in place of its argument ``reading``.
+reads_plots = grouped(reading=plot_reading)
 
-
-def reads_scans(command: Callable[..., None]) -> Callable[..., None]:
-    """As `reads_plots`, for plots without identities: options about tracks are not in the help."""
-    found = dict(inspect.signature(plot_reading, eval_str=True).parameters)
-    for name in ("id", *OF_TRACKS):
-        # Still known: an identity is not used, and a rule about one track is refused by its name.
-        found[name] = _changed(found[name], hidden=True)
-    help = "Standard deviation of the plots, m; or its columns. [default: the configuration's]"
-    found["sigma"] = _changed(found["sigma"], metavar="S|S,S|COL|COL,COL", help=help)
-    return _with_options(command, found)
-
-
-def _changed(parameter: inspect.Parameter, **attributes: Any) -> inspect.Parameter:
-    """An option with other attributes."""
-    kind, option = get_args(parameter.annotation)
-    option = copy(option)
-    for name, value in attributes.items():
-        setattr(option, name, value)
-    return parameter.replace(annotation=Annotated[kind, option])
-
-
-def _with_options(
-    command: Callable[..., None], added: dict[str, inspect.Parameter]
-) -> Callable[..., None]:
-    own = inspect.signature(command, eval_str=True).parameters
-
-    @wraps(command)
-    def with_options(**given: Any) -> None:
-        reading = plot_reading(**{name: given.pop(name) for name in added})
-        command(reading=reading, **given)
-
-    parameters: list[inspect.Parameter] = []
-    for parameter in own.values():
-        parameters += added.values() if parameter.name == "reading" else [parameter]
-    ordered = sorted(parameters, key=lambda each: each.default is not inspect.Parameter.empty)
-    with_options.__signature__ = inspect.Signature(ordered)  # type: ignore[attr-defined]
-    with_options.__annotations__ = {each.name: each.annotation for each in ordered}
-    del with_options.__wrapped__  # its signature is another one
-    return with_options
+# Still known: an identity is not used, and a rule about one track is refused by its name.
+_HIDDEN: dict[str, dict[str, Any]] = {name: {"hidden": True} for name in ("id", *OF_TRACKS)}
+_SCAN_SIGMA = {
+    "metavar": "S|S,S|COL|COL,COL",
+    "help": "Standard deviation of the plots, m; or its columns. [default: the configuration's]",
+}
+#: The same for plots without identities: options about tracks are not in the help.
+reads_scans = grouped(reading=changed(plot_reading, {**_HIDDEN, "sigma": _SCAN_SIGMA}))
 
 
 # -------------------------------------------------------------------- texts

@@ -10,9 +10,9 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import printable
-from fuzzytrack.cli.follow import FollowOptions, follow
-from fuzzytrack.cli.live_run import SavedState
+from fuzzytrack.cli.follow import FollowOptions, follow, follow_options
 from fuzzytrack.cli.noise_words import noise_json, noise_sentence
+from fuzzytrack.cli.option_groups import grouped
 from fuzzytrack.cli.output import (
     print_json,
     print_table,
@@ -23,7 +23,7 @@ from fuzzytrack.cli.output import (
 )
 from fuzzytrack.cli.output_file import STANDARD_OUTPUT, output_file, told_aside
 from fuzzytrack.cli.pictures import check_picture, save_picture
-from fuzzytrack.cli.plot_options import gate_width, reads_plots
+from fuzzytrack.cli.plot_options import gate_width, plot_reading
 from fuzzytrack.io.column_names import is_unit
 from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.findings import Findings
@@ -52,39 +52,22 @@ _LONGEST = 40
 _HEADS = ("plots", "missed", "duration (s)", "innovation RMS ({})", "mean α", "mean β")
 
 
-@reads_plots
-def track(
-    files: Annotated[
-        list[str],
-        typer.Argument(metavar="FILE|DIR...", help="Files of plots, a folder of them, or -."),
-    ],
-    reading: Reading,
-    tracker: Annotated[
-        str | None,
-        typer.Option(
-            "--tracker",
-            metavar="NAME|FILE",
-            help="See `fuzzytrack trackers`; or the file of a rule base: .yaml, .fis (MATLAB), "
-            f".fll (fuzzylite). [default: {DEFAULT_TRACKER}]",
-        ),
-    ] = None,
-    gate: options.Gate = "auto",
-    output: Annotated[
-        str | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="OUT.csv|DIR|-",
-            help="Write the tracks (or .parquet; .geojson, .kml, .czml or .gpx); - prints CSV.",
-        ),
-    ] = None,
-    quote_formulas: Annotated[
-        bool,
-        typer.Option("--quote-formulas", help="In CSV, quote text that a spreadsheet would run."),
-    ] = False,
-    plot: Annotated[
-        str | None, typer.Option(metavar="FILE.png", help="Draw the tracks (or .pdf, .svg…).")
-    ] = None,
+@dataclass(frozen=True)
+class _Pieces:
+    """How a large recording is divided."""
+
+    chunk_rows: int | None
+    jobs: int
+    scheduler: str | None
+    partitions: int
+
+    @property
+    def apart(self) -> bool:
+        """Whether tracks are divided among tasks."""
+        return self.scheduler is not None or self.jobs > 1
+
+
+def _pieces(
     chunk_rows: Annotated[
         int | None,
         typer.Option(
@@ -118,40 +101,45 @@ def track(
             rich_help_panel=_LARGE_JOBS,
         ),
     ] = 16,
-    follow_feed: Annotated[
-        bool,
+) -> _Pieces:
+    return _Pieces(chunk_rows, jobs, scheduler, partitions)
+
+
+@grouped(reading=plot_reading, pieces=_pieces, live=follow_options)
+def track(
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE|DIR...", help="Files of plots, a folder of them, or -."),
+    ],
+    reading: Reading,
+    pieces: _Pieces,
+    live: FollowOptions | None,
+    tracker: Annotated[
+        str | None,
         typer.Option(
-            "--follow",
-            help="Read lines from standard input, and answer each at once.",
-            rich_help_panel=options.LIVE,
+            "--tracker",
+            metavar="NAME|FILE",
+            help="See `fuzzytrack trackers`; or the file of a rule base: .yaml, .fis (MATLAB), "
+            f".fll (fuzzylite). [default: {DEFAULT_TRACKER}]",
         ),
+    ] = None,
+    gate: options.Gate = "auto",
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="OUT.csv|DIR|-",
+            help="Write the tracks (or .parquet; .geojson, .kml, .czml or .gpx); - prints CSV.",
+        ),
+    ] = None,
+    quote_formulas: Annotated[
+        bool,
+        typer.Option("--quote-formulas", help="In CSV, quote text that a spreadsheet would run."),
     ] = False,
-    lateness: Annotated[
-        float | None,
-        typer.Option(
-            metavar="S",
-            help="With --follow, put plots up to S seconds late in place. [default: 0]",
-            rich_help_panel=options.LIVE,
-        ),
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE.png", help="Draw the tracks (or .pdf, .svg…).")
     ] = None,
-    forget: Annotated[
-        float | None,
-        typer.Option(
-            metavar="S",
-            help="With --follow, forget tracks silent for S seconds.",
-            rich_help_panel=options.LIVE,
-        ),
-    ] = None,
-    state: options.StateFile = None,
-    feed: options.FeedWay = None,
-    compiled: Annotated[
-        bool,
-        typer.Option(
-            "--compile/--no-compile",
-            help="With --follow, compile before answering.",
-            rich_help_panel=options.LIVE,
-        ),
-    ] = True,
     plugin: options.Plugins = None,
     json: options.Json = False,
 ) -> None:
@@ -161,36 +149,23 @@ def track(
     """
     options.load_plugins(plugin)
     width = gate_width(gate)
-    live = FollowOptions(
-        lateness=lateness, forget=forget, saved=SavedState(state, feed), compiled=compiled
-    )
-    if follow_feed:
-        _check_follow(plot, chunk_rows, jobs, scheduler)
+    if live is not None:
+        _check_follow(plot, pieces)
         follow(
             files, reading, tracker, width, output, live, json=json, quote_formulas=quote_formulas
         )
         return
-    live.check_unused()
-    apart = scheduler is not None or jobs > 1
     large = len(files) == 1 and _is_large(files[0]) and _goes_on(tracker)
-    in_pieces = apart or chunk_rows is not None or any(map(os.path.isdir, files)) or len(files) > 1
+    in_pieces = pieces.apart or pieces.chunk_rows is not None or len(files) > 1
+    in_pieces = in_pieces or os.path.isdir(files[0])
     if output == STANDARD_OUTPUT and json:
         raise ValueError("--json: -o - writes the tracks to standard output; name a file")
     with output_file(output) as place:
         if in_pieces or (large and not (reading.sort or plot)):
-            from fuzzytrack.recordings.large_jobs import LargeJob
-
             _check_pieces(reading.sort, plot)
-            folder = _folder(output) if apart else ""
+            folder = _folder(output) if pieces.apart else place
             prepared = prepare(files, tracker, reading, width)
-            made = as_lane_tracker(prepared.tracker)
-            job = LargeJob(prepared.files, made, chunk_rows or ROWS, prepared.judge)
-            with progress("tracking") as watch:
-                if apart:
-                    totals = job.track_apart(folder, jobs, scheduler, partitions, watch)
-                else:
-                    totals = job.track(place, watch, quote_formulas=quote_formulas)
-            run = _Run.of(prepared, totals)
+            run = _track_pieces(prepared, pieces, folder, quote_formulas=quote_formulas)
         else:
             _look_ahead(files[0], place, plot)
             with progress("tracking") as watch:
@@ -210,6 +185,23 @@ def track(
         for written in (output, plot):
             if written not in (None, STANDARD_OUTPUT):
                 say(f"wrote {written}")
+
+
+def _track_pieces(
+    prepared: PreparedPlots, pieces: _Pieces, place: str | None, *, quote_formulas: bool
+) -> _Run:
+    """Track a recording in pieces to a file, or in partitions to a folder."""
+    from fuzzytrack.recordings.large_jobs import LargeJob
+
+    made = as_lane_tracker(prepared.tracker)
+    job = LargeJob(prepared.files, made, pieces.chunk_rows or ROWS, prepared.judge)
+    with progress("tracking") as watch:
+        if pieces.apart:
+            assert place is not None
+            totals = job.track_apart(place, pieces.jobs, pieces.scheduler, pieces.partitions, watch)
+        else:
+            totals = job.track(place, watch, quote_formulas=quote_formulas)
+    return _Run.of(prepared, totals)
 
 
 def _goes_on(tracker: str | None) -> bool:
@@ -243,14 +235,12 @@ def _check_pieces(sort: bool, plot: str | None) -> None:
             )
 
 
-def _check_follow(
-    plot: str | None, chunk_rows: int | None, jobs: int, scheduler: str | None
-) -> None:
+def _check_follow(plot: str | None, pieces: _Pieces) -> None:
     for option, given in (
         ("--plot", plot is not None),
-        ("--chunk-rows", chunk_rows is not None),
-        ("--jobs", jobs > 1),
-        ("--scheduler", scheduler is not None),
+        ("--chunk-rows", pieces.chunk_rows is not None),
+        ("--jobs", pieces.jobs > 1),
+        ("--scheduler", pieces.scheduler is not None),
     ):
         if given:
             raise ValueError(
