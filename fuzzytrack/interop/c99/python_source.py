@@ -92,7 +92,7 @@ class Definition:
 def readable_name(function: FunctionType) -> str:
     """Name of a function; of a lambda that of the function around it."""
     parts = [part for part in function.__qualname__.split(".") if not part.startswith("<")]
-    return parts[-1] if parts else "anonymous"
+    return parts[-1] if parts else "lambda"
 
 
 def plain_function(value: Any) -> FunctionType | None:
@@ -126,8 +126,11 @@ def definition_of(function: FunctionType) -> Definition:
     trouble = "has changed since it was imported" if text else "is not in a file"
     remedy = "C code is written from the source"
     if text and code.co_name == "<lambda>" and not _has_columns(code):
-        trouble = "cannot be told from other lambdas of its line"
-        remedy = "start Python without -X no_debug_ranges, or name the function with def"
+        trouble = "cannot be told from that of the other lambdas on its line"
+        remedy = (
+            "write each on a line of its own, or start Python without -X no_debug_ranges and "
+            "PYTHONNODEBUGRANGES"
+        )
     raise TranslationError(
         f"the source of the function {readable_name(function)} {trouble}; {remedy}",
         Location(code.co_filename, code.co_firstlineno, 1),
