@@ -237,7 +237,7 @@ def _whole(
     header = f"{called}.h"
     figures = {"name": called, "prefix": prefix, "number": kind.name, **figures}
     if moving is not None:
-        about = [*about, *moving.about()]
+        about = [*about, *moving.about(f"{prefix}_infer" if programs else "")]
         programs = [*programs, moving.program()]
         checks = [*checks, moving.check()]
         figures["filter"] = moving.figures()

@@ -80,8 +80,14 @@ class FilterExport:
             made.needs,
         )
 
-    def about(self) -> Iterator[tuple[str, str]]:
-        """What a comment says of it."""
+    def about(self, beside: str = "") -> Iterator[tuple[str, str]]:
+        """What a comment says of it.
+
+        Parameters
+        ----------
+        beside : str
+            The function of the same rule base in the header; empty if there is none.
+        """
         made = self.translation
         sigma = "with" if made.needs_sigma else "without"
         yield "", ""
@@ -91,6 +97,12 @@ class FilterExport:
             f"{counted(made.axes, 'axis', 'axes')}, plots in m {sigma} standard "
             "deviations, times in s; a coordinate that is NaN is missed",
         )
+        if beside:
+            yield (
+                "Rules",
+                f"calculated as by the tracker of fuzzytrack, not by {beside}: they differ by "
+                "roundings",
+            )
         trial = (
             f"a trial of {_TRACKS} turning tracks of {_PLOTS} plots within {_RADIUS:.0f} m of the "
             f"origin, with noise of {_SIGMA:.0f} m and a tenth missed"
