@@ -9,7 +9,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from fuzzytrack.interop.c99.blocks import Assignment, Block
+from fuzzytrack.interop.c99.blocks import Assignment, Block, Line
 from fuzzytrack.interop.c99.program import Program
 from fuzzytrack.interop.c99.python_source import Definition
 from fuzzytrack.interop.c99.values import (
@@ -18,6 +18,7 @@ from fuzzytrack.interop.c99.values import (
     CHOICE,
     EQUAL,
     NUMBER,
+    POSTFIX,
     TRUTH,
     UNARY,
     WHOLE,
@@ -41,6 +42,7 @@ __all__ = [
     "inside",
     "operand",
     "whole_constant",
+    "wording",
 ]
 
 _INT32, _INT64 = 2.0**31 - 1, 2.0**62
@@ -103,6 +105,19 @@ class ConversionWriter:
             return write()
         finally:
             self.block = outer
+
+    def value(self, node: ast.expr) -> Value:
+        """Value of an expression."""
+        raise NotImplementedError
+
+    def statement(self, text: str) -> None:
+        """Add a statement to the block."""
+        self.block.items.append(Line(text))
+
+    def helper(self, name: str, kind: str, *arguments: Scalar) -> Scalar:
+        """Call of a function of `fuzzytrack.interop.c99.arithmetic`."""
+        texts = ", ".join(argument.text for argument in arguments)
+        return Scalar(f"{self.program.helper(name)}({texts})", kind, POSTFIX)
 
     # ------------------------------------------------------------ conversions
 
@@ -259,3 +274,19 @@ def describe_form(form: Form) -> str:
         return f"a tuple of {len(form)} values"
     words = {NUMBER: "a number", WHOLE: "an integer", TRUTH: "a truth value"}
     return words[form] if isinstance(form, str) else "the same value as elsewhere"
+
+
+def wording(node: ast.AST) -> str:
+    """Words for a part of Python, for messages."""
+    special = {
+        "ListComp": "a list comprehension", "GeneratorExp": "a generator", "Dict": "a dictionary",
+        "List": "a list", "Set": "a set", "Lambda": "a function inside of it",
+        "FunctionDef": "a function inside of it", "JoinedStr": "a text", "While": "`while`, a loop "
+        "without a constant bound", "Try": "`try`", "Raise": "`raise`", "With": "`with`",
+        "Assert": "`assert`", "Delete": "`del`", "In": "`in`", "NotIn": "`not in`",
+        "Yield": "`yield`", "Await": "`await`", "Import": "`import`", "ImportFrom": "`import`",
+        "Global": "`global`", "Nonlocal": "`nonlocal`", "NamedExpr": "`:=`", "Starred": "`*`",
+        "Match": "`match`", "ClassDef": "a class",
+    }  # fmt: skip
+    kind = type(node).__name__
+    return special.get(kind, f"`{kind}`")
