@@ -8,32 +8,30 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fuzzytrack.arrays import Array
 from fuzzytrack.errors import DataError
 from fuzzytrack.io.angles import unwrapped
 from fuzzytrack.io.cleaning import Cleaner
 from fuzzytrack.io.columns import Columns, choose_columns, looks_like_identity
-from fuzzytrack.io.decoder import Noise, PlotDecoder, is_latitude, joined_cells
-from fuzzytrack.io.description import PlotDescription, TimeUnit
+from fuzzytrack.io.decoder import PlotDecoder
 from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.first_rows import decoder_of, notes_of
 from fuzzytrack.io.formats import open_table
 from fuzzytrack.io.noise_estimate import NoiseEstimate, estimate_noise
 from fuzzytrack.io.piece import Piece, joined
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Kind, Table, no_rows
-from fuzzytrack.io.times import Clock
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
 
 if TYPE_CHECKING:
-    from fuzzytrack.io.geodetic import LocalFrame
+    pass
 
-__all__ = ["ROWS", "Input", "PlotFiles", "Survey", "frame_of", "opened"]
+__all__ = ["ROWS", "Input", "PlotFiles", "Survey", "opened"]
 
 #: Rows of a piece: many enough for compiled code, few enough to be small beside a process.
 ROWS = 250_000
@@ -128,8 +126,8 @@ class PlotFiles:
             columns = replace(columns, id="")
         _check_alike(inputs, reading, {name: types[name] for name in columns.kinds}, origin)
         table = _first_table(inputs, reading, columns)
-        decoder = _decoder(columns, description, table, units)
-        notes = _notes(columns, decoder.clock, table, unused, identified=identified)
+        decoder = decoder_of(columns, description, table, units)
+        notes = notes_of(columns, decoder.clock, table, unused, identified=identified)
         return cls(tuple(inputs), reading, decoder, notes, table)
 
     @property
@@ -380,107 +378,6 @@ def _estimate(
         least = _LEAST_NOISE * found.sigma.max()
         return np.maximum(found.sigma, least).tolist(), found.standard_error.tolist()
     return (found.pooled,) * count, (found.pooled_error,) * count
-
-
-def _decoder(
-    columns: Columns, description: PlotDescription, table: Table, units: Mapping[str, str]
-) -> PlotDecoder:
-    cells = joined_cells(table, columns)
-    unit = units.get(columns.time)
-    if unit is not None and unit not in get_args(TimeUnit) and description.time_unit is None:
-        raise DataError(
-            f"{table.file}: column {columns.time}: its unit is {unit!r}; expected one of "
-            f"{', '.join(get_args(TimeUnit))}; `time_unit` says which it is"
-        )
-    clock = Clock.of(cells, unit=description.time_unit, name=columns.time, unit_of_name=unit)
-    frame = frame_of(columns, description, table)
-    return PlotDecoder(columns, description, clock, frame, _given_noise(columns, description))
-
-
-def frame_of(columns: Columns, description: PlotDescription, table: Table) -> LocalFrame | None:
-    """Frame of the positions: about the site, or about the first place on earth in a table.
-
-    Raises
-    ------
-    DataError
-        If there must be a place and there is none.
-    """
-    if description.site is not None:
-        from fuzzytrack.io.geodetic import LocalFrame
-
-        return LocalFrame(*description.site)
-    if columns.own_ship and is_latitude(columns.own_ship[0]):
-        return _frame_at_first(table, columns, columns.own_ship)
-    return _frame_at_first(table, columns, columns.read) if columns.position == "geodetic" else None
-
-
-def _frame_at_first(table: Table, columns: Columns, names: Sequence[str]) -> LocalFrame:
-    """Frame about the first position that is one."""
-    from fuzzytrack.io.geodetic import LocalFrame
-
-    places = np.stack([table.numbers[name] * columns.meters(name) for name in names], axis=1)
-    longitudes = np.abs(places[:, 1])
-    good = (np.abs(places[:, 0]) <= 90) & (longitudes <= 360)
-    if not good.any():
-        raise DataError(
-            f"{table.file}: columns {', '.join(names)}: no latitude and longitude within "
-            "-90 to 90 and -180 to 360"
-        )
-    # Where longitudes count from -180 to 180, more is what stands for none.
-    usual = good & (longitudes <= 180)
-    good = usual if usual.any() else good
-    first = places[int(np.argmax(good))]
-    altitude = first[2] if len(first) == 3 and math.isfinite(first[2]) else 0.0
-    return LocalFrame(float(first[0]), float(first[1]), float(altitude))
-
-
-def _given_noise(columns: Columns, said: PlotDescription) -> Noise:
-    n_axes = len(columns.axes)
-    if said.sigma not in (None, "auto"):
-        given = said.sigma if isinstance(said.sigma, tuple) else (said.sigma,) * n_axes
-        if len(given) != n_axes:
-            raise DataError(f"sigma: {len(given)} given for {n_axes} axes; give one, or one each")
-        return tuple(_checked("sigma", value) for value in given)
-    if columns.position != "polar":
-        return ()
-    polar = (said.sigma_range, said.sigma_azimuth, said.sigma_elevation)[:n_axes]
-    names = ("sigma_range", "sigma_azimuth", "sigma_elevation")
-    return tuple(_checked(name, value) for name, value in zip(names, polar, strict=False))
-
-
-def _checked(name: str, value: float | str | None) -> float | str | None:
-    if value is None or isinstance(value, str):
-        return value
-    if not 0 < value < math.inf:
-        raise ValueError(f"{name}: must be > 0, got {value:g}")
-    return float(value)
-
-
-def _notes(
-    columns: Columns, clock: Clock, table: Table, unused: str, *, identified: bool
-) -> tuple[str, ...]:
-    notes = [clock.note] if clock.note else []
-    notes += filter(None, (_constant(table.numbers[name], name) for name in columns.read))
-    if unused and identified:
-        notes.append(
-            f"column {unused!r} looks like an identity and is not used; `id`={unused} makes a "
-            "track of each"
-        )
-    elif unused:
-        notes.append(f"column {unused!r}: identities of plots are not used")
-    return tuple(notes)
-
-
-# A column of position with fewer numbers than this may be constant by chance.
-_CONSTANT_FROM = 4
-
-
-def _constant(values: Array, name: str) -> str:
-    """Remark about a column of position that never changes: it may hold no position at all."""
-    known = values[np.isfinite(values)]
-    if len(known) < _CONSTANT_FROM or not (known == known[0]).all():
-        return ""
-    return f"column {name} is {known[0]:.15g} in all of the first {len(known)} plots that have it"
 
 
 def _check_alike(

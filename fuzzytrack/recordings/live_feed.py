@@ -13,10 +13,11 @@ from fuzzytrack.errors import DataError
 from fuzzytrack.io.columns import Columns, choose_columns
 from fuzzytrack.io.decoder import joined_cells
 from fuzzytrack.io.findings import Findings
+from fuzzytrack.io.first_rows import frame_of
 from fuzzytrack.io.line_tables import LineTables, line_tables
 from fuzzytrack.io.line_texts import csv_text, json_text
 from fuzzytrack.io.piece import Piece, joined
-from fuzzytrack.io.plot_files import PlotFiles, Survey, frame_of
+from fuzzytrack.io.plot_files import PlotFiles, Survey
 from fuzzytrack.io.reading import Reading
 from fuzzytrack.io.recognition import recognize
 from fuzzytrack.io.table import no_rows
