@@ -206,6 +206,17 @@ def test_what_has_no_counterpart_or_is_broken_is_named_with_its_place(old, new, 
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("kind", ["InputVariable", "OutputVariable", "RuleBlock"])
+def test_a_file_that_lacks_a_kind_of_block_is_told_so(kind):
+    lines = iter(CHAIN.splitlines(keepends=True))
+    kept, block = [], ""
+    for line in lines:
+        block = line.split(":")[0] if not line.startswith(" ") else block
+        kept += [line] if block != kind else []
+    with pytest.raises(RuleBaseError, match=f"^x:1:1: there is no {kind}: is the file complete"):
+        loads_fll("".join(kept), "x")
+
+
 def test_nested_parentheses_are_bounded():
     deep = "(" * 500 + "level is low" + ")" * 500
     with pytest.raises(RuleBaseError, match="more than 20 parentheses"):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.fuzzy.formats import fis_words as words
@@ -22,7 +22,7 @@ from fuzzytrack.fuzzy.formats.parts import (
     VariablePart,
     widened,
 )  # fmt: skip
-from fuzzytrack.fuzzy.formats.source_text import SourceText, located
+from fuzzytrack.fuzzy.formats.source_text import PlacedText, SourceText, located
 from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.shapes import LINEAR
@@ -68,22 +68,13 @@ def loads_fis(text: str | bytes, file: str = "<text>", name: str = "") -> RuleBa
     return _FisReader(source, name).system().rulebase()
 
 
-@dataclass(frozen=True)
-class _Entry:
-    """The value of a key, and where it starts."""
-
-    text: str
-    line: int
-    column: int
-
-
 class _FisReader:
     def __init__(self, source: SourceText, name: str) -> None:
         self.source = source
         self.name = name
-        self.sections: dict[str, dict[str, _Entry]] = {}
+        self.sections: dict[str, dict[str, PlacedText]] = {}
         self.starts: dict[str, int] = {}
-        self.rules: list[_Entry] = []
+        self.rules: list[PlacedText] = []
         self._split()
 
     # ---------------------------------------------------------------- sections and entries
@@ -116,7 +107,7 @@ class _FisReader:
                     "text before the first section, [System]: this is no FIS file",
                 )
             elif section == "rules":
-                self.rules.append(_Entry(line, number, start + 1))
+                self.rules.append(PlacedText(line, number, start + 1))
             else:
                 self._entry(section, line, number, start)
         if "system" not in self.sections:
@@ -131,9 +122,9 @@ class _FisReader:
         key = found.group(1).lower()
         if key in self.sections[section]:
             raise self.source.error(number, start + 1, f"{found.group(1)} is given twice")
-        self.sections[section][key] = _Entry(found.group(2), number, start + found.start(2) + 1)
+        self.sections[section][key] = PlacedText(found.group(2), number, start + found.start(2) + 1)
 
-    def _get(self, section: str, key: str) -> _Entry:
+    def _get(self, section: str, key: str) -> PlacedText:
         entry = self.sections[section].get(key.lower())
         if entry is None:
             raise self.source.error(
@@ -141,10 +132,10 @@ class _FisReader:
             )
         return entry
 
-    def _place(self, entry: _Entry, offset: int = 0) -> Location:
+    def _place(self, entry: PlacedText, offset: int = 0) -> Location:
         return self.source.place(entry.line, entry.column + offset)
 
-    def _text(self, entry: _Entry, what: str) -> str:
+    def _text(self, entry: PlacedText, what: str) -> str:
         found = _TEXT.fullmatch(entry.text)
         if found is None:
             raise RuleBaseError(
@@ -166,7 +157,7 @@ class _FisReader:
         return int(found[1])
 
     def _numbers(
-        self, entry: _Entry, text: str, offset: int, what: str, *, infinite: bool = False
+        self, entry: PlacedText, text: str, offset: int, what: str, *, infinite: bool = False
     ) -> tuple[float, ...]:
         """Numbers of a list; those that are infinite only where they may be."""
         found = []
@@ -295,14 +286,15 @@ class _FisReader:
         said = self._whole(section, "NumMFs")
         if sorted(entries) != list(range(1, len(entries) + 1)) or said not in (None, len(entries)):
             counted = len(entries) if said is None else said
+            last = f", the last MF{max(entries)}" if entries else ""
             raise self.source.error(
                 self.starts[section],
                 1,
-                f"needs MF1 to MF{counted}, got {len(entries)} sets: is the file complete?",
+                f"the sets must be MF1 to MF{counted}, got {len(entries)} sets{last}",
             )
         return [self._set(entries[number], constant) for number in sorted(entries)]
 
-    def _set(self, entry: _Entry, constant: bool) -> SetPart:
+    def _set(self, entry: PlacedText, constant: bool) -> SetPart:
         text = entry.text
         found = re.fullmatch(
             rf"({_TEXT.pattern})\s*:\s*({_TEXT.pattern})\s*,\s*(\[[^\[\]]*\]|[^\s\[\],]+)", text
@@ -370,7 +362,7 @@ class _FisReader:
 
     # ---------------------------------------------------------------- rules
 
-    def _rule(self, entry: _Entry, system: System) -> RulePart:
+    def _rule(self, entry: PlacedText, system: System) -> RulePart:
         found = _RULE.fullmatch(entry.text)
         place = self._place(entry)
         if found is None:
@@ -397,7 +389,7 @@ class _FisReader:
 
     def _indices(
         self,
-        entry: _Entry,
+        entry: PlacedText,
         found: re.Match[str],
         group: int,
         variables: list[VariablePart],

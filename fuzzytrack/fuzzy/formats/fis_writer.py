@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.coverage import find_hole
 from fuzzytrack.fuzzy.formats import fis_words as words
 from fuzzytrack.fuzzy.formats.carried import Carried
 from fuzzytrack.fuzzy.formats.parts import DEFAULT_GRID
 from fuzzytrack.fuzzy.formats.translation import (
-    BaseSets,
+    FormatWriter,
     Row,
     Translation,
-    no_counterpart,
     one_line,
     rows,
 )  # fmt: skip
@@ -51,26 +49,15 @@ def dumps_fis(rules: RuleBase) -> Translation:
     return _FisWriter(rules).translation()
 
 
-class _FisWriter:
+class _FisWriter(FormatWriter):
     def __init__(self, rules: RuleBase) -> None:
-        self.rules = rules
+        super().__init__(rules, _FIS)
         algebras = {rules.operators_of(output) for output in rules.outputs}
         if len(algebras) > 1:
-            raise self._lacks("an output with operators of its own")
+            raise self.lacks("an output with operators of its own")
         (self.operators,) = algebras
         self.sugeno = self.operators.defuzzification == "weighted-centers"
-        self.inputs = {v.name: BaseSets(v) for v in rules.inputs}
-        self.outputs = {v.name: BaseSets(v) for v in rules.outputs}
         self.rows = [row for rule in rules.rules for row in self._rows(rows(rule))]
-
-    def _lacks(self, what: str) -> RuleBaseError:
-        return no_counterpart(self.rules, what, _FIS)
-
-    def _word(self, word: str, allowed: Mapping[str, str], what: str) -> str:
-        for theirs, ours in allowed.items():
-            if ours == word:
-                return theirs
-        raise self._lacks(f"{what} {word}")
 
     # ---------------------------------------------------------------- the text
 
@@ -98,24 +85,24 @@ class _FisWriter:
         yield f"NumOutputs={len(self.rules.outputs)}"
         yield f"NumRules={len(self.rows)}"
         conjunction = self.rules.operators.conjunction
-        yield f"AndMethod='{self._word(conjunction, words.ANDS, 'and')}'"
+        yield f"AndMethod='{self.word(conjunction, words.ANDS, 'and')}'"
         yield f"OrMethod='{self._either()}'"
         if self.sugeno:
             self._check_sums()
             yield "ImpMethod='prod'"
             yield "AggMethod='sum'"
         else:
-            yield f"ImpMethod='{self._word(operators.implying, words.IMPLICATIONS, 'implication')}'"
-            yield f"AggMethod='{self._word(operators.disjunction, words.AGGREGATIONS, 'or')}'"
+            yield f"ImpMethod='{self.word(operators.implying, words.IMPLICATIONS, 'implication')}'"
+            yield f"AggMethod='{self.word(operators.disjunction, words.AGGREGATIONS, 'or')}'"
         kind = words.DEFUZZIFICATIONS["sugeno" if self.sugeno else "mamdani"]
-        yield f"DefuzzMethod='{self._word(operators.defuzzification, kind, 'defuzzification')}'"
+        yield f"DefuzzMethod='{self.word(operators.defuzzification, kind, 'defuzzification')}'"
 
     def _either(self) -> str:
         """The OR of conditions; it matters only where a rule has alternatives."""
         if not any(len(row.groups) > 1 for row in self.rows):
             alternatives = self.rules.operators.alternatives
             return "probor" if alternatives == "algebraic-sum" else "max"
-        return self._word(self.rules.operators.alternatives, words.ORS, "alternatives")
+        return self.word(self.rules.operators.alternatives, words.ORS, "alternatives")
 
     def _check_sums(self) -> None:
         """Sugeno systems add up the rules; another OR is the same only where each set has one."""
@@ -123,7 +110,7 @@ class _FisWriter:
             return
         concluded = [pair for row in self.rows for pair in row.sets.items()]
         if len(set(concluded)) < len(concluded):
-            raise self._lacks(
+            raise self.lacks(
                 f"or {self.operators.disjunction} with weighted-centers, where rules share a set,"
             )
 
@@ -154,9 +141,9 @@ class _FisWriter:
         if shape == "singleton" and role == "Input":
             return "trimf", parameters * 3
         if shape not in words.SHAPES:
-            raise self._lacks(f"the shape {shape} of {name!r}")
+            raise self.lacks(f"the shape {shape} of {name!r}")
         if shape == "gauss2mf" and parameters[0] > parameters[2]:
-            raise self._lacks(f"gauss2mf with mean1 > mean2, of {name!r},")
+            raise self.lacks(f"gauss2mf with mean1 > mean2, of {name!r},")
         return shape, words.SHAPES[shape].written(parameters)
 
     # ---------------------------------------------------------------- rules
@@ -164,8 +151,6 @@ class _FisWriter:
     def _rows(self, found: Iterator[Row]) -> Iterator[Row]:
         """Rules with one connection each: those of maxima may be divided."""
         for row in found:
-            if row.weight != 1.0 and self.operators.weighing != "product":
-                raise self._lacks(f"a confidence that is joined by {self.operators.weighing}")
             single = all(len(group) == 1 for group in row.groups)
             inputs = [name for group in row.groups for name, _ in group]
             if len(row.groups) == 1 or (single and len(set(inputs)) == len(inputs)):
@@ -173,7 +158,7 @@ class _FisWriter:
                 continue
             maxima = self.operators.disjunction == self.rules.operators.alternatives == "max"
             if not maxima or self.sugeno:
-                raise self._lacks(f"alternatives of several conditions ({row.groups[1]})")
+                raise self.lacks(f"alternatives of several conditions ({row.groups[1]})")
             for group in row.groups:
                 yield row._replace(groups=(group,))
 
@@ -188,7 +173,7 @@ class _FisWriter:
             concluded.append(str(index))
         connection = 2 if len(row.groups) > 1 else 1
         sets = f"{' '.join(asked)}, {' '.join(concluded)}"
-        return f"{sets} ({written(row.weight)}) : {connection}"
+        return f"{sets} ({self.weight(row)}) : {connection}"
 
     def _input_index(self, name: str, groups: tuple[Conditions, ...]) -> str:
         for group in groups:
@@ -201,7 +186,7 @@ class _FisWriter:
     def _signed(self, place: int, hedges: tuple[str, ...], what: str) -> int:
         """Index of a set from 1, negative for its complement."""
         if hedges not in ((), ("not",)):
-            raise self._lacks(f"the hedge of '{what}', {' '.join(hedges)},")
+            raise self.lacks(f"the hedge of '{what}', {' '.join(hedges)},")
         return -(place + 1) if hedges else place + 1
 
     # ---------------------------------------------------------------- notes

@@ -15,7 +15,7 @@ from fuzzytrack.fuzzy.formats import fll_words as words
 from fuzzytrack.fuzzy.formats.carried import Carried
 from fuzzytrack.fuzzy.formats.fll_rules import RuleParser
 from fuzzytrack.fuzzy.formats.parts import SetPart, System, VariablePart, is_linear, widened
-from fuzzytrack.fuzzy.formats.source_text import SourceText
+from fuzzytrack.fuzzy.formats.source_text import PlacedText, SourceText
 from fuzzytrack.fuzzy.operators import Operators
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.shapes import LINEAR
@@ -70,15 +70,6 @@ def loads_fll(text: str | bytes, file: str = "<text>", name: str = "") -> RuleBa
     return _FllReader(source, name).system().rulebase()
 
 
-@dataclass(frozen=True)
-class _Value:
-    """The value of a key, and where it starts."""
-
-    text: str
-    line: int
-    column: int
-
-
 @dataclass
 class _Block:
     """A block: its name, its values by key, and its terms or rules."""
@@ -86,8 +77,8 @@ class _Block:
     kind: str
     name: str
     place: Location
-    values: dict[str, _Value] = field(default_factory=dict)
-    repeated: list[_Value] = field(default_factory=list)
+    values: dict[str, PlacedText] = field(default_factory=dict)
+    repeated: list[PlacedText] = field(default_factory=list)
 
     def text(self, key: str) -> str:
         value = self.values.get(key)
@@ -101,8 +92,11 @@ class _FllReader:
         self.blocks: list[_Block] = []
         for number, line in enumerate(source.lines, start=1):
             self._line(number, line.split("#", 1)[0])
-        if not any(block.kind == "Engine" for block in self.blocks):
+        if not self._of_kind("Engine"):
             raise source.error(1, 1, "no line 'Engine: name': this is no FLL file")
+        for kind in ("InputVariable", "OutputVariable", "RuleBlock"):
+            if not self._of_kind(kind):
+                raise source.error(1, 1, f"there is no {kind}: is the file complete?")
         self.inputs = [self._input(b) for b in self._of_kind("InputVariable")]
         self.outputs = [self._output(b) for b in self._of_kind("OutputVariable")]
         self.rule_blocks = self._of_kind("RuleBlock")
@@ -132,7 +126,7 @@ class _FllReader:
                 f"{block.kind}: unknown key {quoted(key)}{suggestion(key, allowed)}",
                 place,
             )
-        value = _Value(text, number, start + found.start(2))
+        value = PlacedText(text, number, start + found.start(2))
         if key in _REPEATED:
             block.repeated.append(value)
         elif key in block.values:
@@ -161,7 +155,7 @@ class _FllReader:
                 )
             names.add(part.name)
 
-    def _place(self, value: _Value, offset: int = 0) -> Location:
+    def _place(self, value: PlacedText, offset: int = 0) -> Location:
         return self.source.place(value.line, value.column + offset)
 
     def _flag(self, block: _Block, key: str, usual: bool) -> bool:
@@ -174,7 +168,7 @@ class _FllReader:
             )
         return value.text == "true"
 
-    def _choice(self, value: _Value, allowed: dict[str, str], what: str) -> str:
+    def _choice(self, value: PlacedText, allowed: dict[str, str], what: str) -> str:
         """Word of this package for a word of the file."""
         word = value.text.split()[0] if value.text.split() else ""
         if word not in allowed or word != value.text:
@@ -284,7 +278,7 @@ class _FllReader:
 
     # ---------------------------------------------------------------- terms
 
-    def _term(self, value: _Value, block: _Block, *, constant: bool) -> SetPart:
+    def _term(self, value: PlacedText, block: _Block, *, constant: bool) -> SetPart:
         found = re.fullmatch(r"(\S+)\s+(\S+)\s*(.*)", value.text)
         if found is None:
             raise RuleBaseError(
@@ -378,7 +372,7 @@ class _FllReader:
         )  # fmt: skip
         if engine.text("description"):
             system.carried.parts.setdefault("description", engine.text("description"))
-        implications: list[dict[str, _Value]] = [{} for _ in self.outputs]
+        implications: list[dict[str, PlacedText]] = [{} for _ in self.outputs]
         weighted = False
         for block in self.rule_blocks:
             implication, value = self._implication(block)
@@ -413,7 +407,7 @@ class _FllReader:
             found = norm
         return found
 
-    def _implication(self, block: _Block) -> tuple[str, _Value | None]:
+    def _implication(self, block: _Block) -> tuple[str, PlacedText | None]:
         """The implication of a block; version 5 of the language names it activation."""
         activation = block.values.get("activation")
         if activation is not None and activation.text in words.T_NORMS:
@@ -433,7 +427,7 @@ class _FllReader:
         system: System,
         conjunction: str,
         alternatives: str,
-        implications: list[dict[str, _Value]],
+        implications: list[dict[str, PlacedText]],
         weighted: bool,
     ) -> None:
         """One algebra for all outputs if they have the same, and otherwise one for each."""

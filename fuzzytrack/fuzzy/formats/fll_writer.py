@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.formats import fll_words as words
 from fuzzytrack.fuzzy.formats.carried import Carried
 from fuzzytrack.fuzzy.formats.translation import (
     BaseSets,
+    FormatWriter,
     Row,
     Translation,
-    no_counterpart,
     one_line,
     rows,
 )  # fmt: skip
@@ -51,11 +51,9 @@ def dumps_fll(rules: RuleBase) -> Translation:
     return _FllWriter(rules).translation()
 
 
-class _FllWriter:
+class _FllWriter(FormatWriter):
     def __init__(self, rules: RuleBase) -> None:
-        self.rules = rules
-        self.inputs = {v.name: BaseSets(v) for v in rules.inputs}
-        self.outputs = {v.name: BaseSets(v) for v in rules.outputs}
+        super().__init__(rules, _FLL)
         self.renamed: list[str] = []
         self.names = {
             v.name: self._set_names(v, sets)
@@ -65,15 +63,6 @@ class _FllWriter:
                 strict=True,
             )
         }
-
-    def _lacks(self, what: str) -> RuleBaseError:
-        return no_counterpart(self.rules, what, _FLL)
-
-    def _word(self, word: str, allowed: Mapping[str, str], what: str) -> str:
-        for theirs, ours in allowed.items():
-            if ours == word:
-                return theirs
-        raise self._lacks(f"{what} {word}")
 
     def _set_names(self, variable: Variable, sets: BaseSets) -> list[str]:
         """Names of sets with the characters that the language has."""
@@ -133,14 +122,14 @@ class _FllWriter:
         yield f"  range: {written(universe.low)} {written(universe.high)}"
         yield "  lock-range: false"
         constant = operators.defuzzification == "weighted-centers"
-        aggregation = self._word(operators.disjunction, words.S_NORMS, "or")
+        aggregation = self.word(operators.disjunction, words.S_NORMS, "or")
         if constant and operators.disjunction == "sum":
             aggregation = "none"
         yield f"  aggregation: {aggregation}"
         if constant:
             yield "  defuzzifier: WeightedAverage TakagiSugeno"
         else:
-            word = self._word(operators.defuzzification, words.DEFUZZIFIERS, "defuzzification")
+            word = self.word(operators.defuzzification, words.DEFUZZIFIERS, "defuzzification")
             yield f"  defuzzifier: {word} {universe.points}"
         yield f"  default: {'nan' if variable.default is None else written(variable.default)}"
         yield "  lock-previous: false"
@@ -162,7 +151,7 @@ class _FllWriter:
     def _term(self, name: str, shape: str, parameters: tuple[float, ...]) -> str:
         found = words.term_of(shape, parameters)
         if found is None:
-            raise self._lacks(f"the shape {shape} of {name!r}")
+            raise self.lacks(f"the shape {shape} of {name!r}")
         term, numbers = found
         texts = [written(x) if math.isfinite(x) else repr(x) for x in numbers]
         return f"  term: {name} {term} {' '.join(texts)}"
@@ -177,7 +166,7 @@ class _FllWriter:
             constant = operators.defuzzification == "weighted-centers"
             implication = "none"
             if not constant:
-                implication = self._word(operators.implying, words.T_NORMS, "implication")
+                implication = self.word(operators.implying, words.T_NORMS, "implication")
             found.setdefault(implication, []).append(output.name)
         return found
 
@@ -185,8 +174,8 @@ class _FllWriter:
         operators = self.rules.operators
         yield "RuleBlock: "
         yield "  enabled: true"
-        yield f"  conjunction: {self._word(operators.conjunction, words.T_NORMS, 'and')}"
-        yield f"  disjunction: {self._word(operators.alternatives, words.S_NORMS, 'alternatives')}"
+        yield f"  conjunction: {self.word(operators.conjunction, words.T_NORMS, 'and')}"
+        yield f"  disjunction: {self.word(operators.alternatives, words.S_NORMS, 'alternatives')}"
         yield f"  implication: {implication}"
         yield "  activation: General"
         for rule in self.rules.rules:
@@ -196,24 +185,20 @@ class _FllWriter:
                     yield self._rule(row._replace(sets=sets))
 
     def _rule(self, row: Row) -> str:
-        for name in row.sets:
-            weighing = self.rules.operators_of(self.rules.output(name)).weighing
-            if row.weight != 1.0 and weighing != "product":
-                raise self._lacks(f"a confidence that is joined by {weighing}")
         conditions = " or ".join(self._group(group) for group in row.groups)
         conclusions = " and ".join(
             f"{name} is {self._concluded(name, term)}" for name, term in row.sets.items()
         )
-        weight = "" if row.weight == 1.0 else f" with {written(row.weight)}"
+        weight = "" if row.weight == 1.0 else f" with {self.weight(row)}"
         return f"  rule: if {conditions} then {conclusions}{weight}"
 
     def _group(self, conditions: Conditions) -> str:
         found = []
         for name, term in conditions:
             place, hedges = self.inputs[name].find(term)
-            theirs = [self._word(hedge, words.HEDGES, "the hedge") for hedge in hedges]
+            theirs = [self.word(hedge, words.HEDGES, "the hedge") for hedge in hedges]
             if "any" in theirs[:-1]:
-                raise self._lacks("a hedge after any")
+                raise self.lacks("a hedge after any")
             term_words = theirs if theirs[-1:] == ["any"] else [*theirs, self.names[name][place]]
             found.append(f"{name} is {' '.join(term_words)}")
         return " and ".join(found)
@@ -221,7 +206,7 @@ class _FllWriter:
     def _concluded(self, name: str, term: str) -> str:
         place, hedges = self.outputs[name].find(term)
         if hedges:
-            raise self._lacks(f"the hedge of '{name} is {term}', {' '.join(hedges)},")
+            raise self.lacks(f"the hedge of '{name} is {term}', {' '.join(hedges)},")
         return self.names[name][place]
 
     # ---------------------------------------------------------------- notes

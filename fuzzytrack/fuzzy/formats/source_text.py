@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from fuzzytrack.errors import Location, RuleBaseError
 from fuzzytrack.numerals import as_number
 from fuzzytrack.yamltree import quoted
 
-__all__ = ["MAX_BYTES", "SourceText", "located"]
+__all__ = ["MAX_BYTES", "PlacedText", "SourceText", "located"]
 
 #: Largest file that is read.
 MAX_BYTES = 1024 * 1024
@@ -18,6 +19,15 @@ MAX_BYTES = 1024 * 1024
 _LARGEST = 1e100
 
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029\ufeff]")
+
+
+@dataclass(frozen=True)
+class PlacedText:
+    """A part of a line, and where it starts; lines and columns count from 1."""
+
+    text: str
+    line: int
+    column: int
 
 
 class SourceText:

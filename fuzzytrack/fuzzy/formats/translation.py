@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from fuzzytrack.errors import RuleBaseError
 from fuzzytrack.fuzzy.membership import FuzzySet
+from fuzzytrack.fuzzy.numbers import written
 from fuzzytrack.fuzzy.rulebase import Conditions, Rule, RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.yamltree import quoted
 
-__all__ = ["BaseSets", "Row", "Translation", "no_counterpart", "one_line", "rows"]
+__all__ = ["BaseSets", "FormatWriter", "Row", "Translation", "one_line", "rows"]
 
 
 class Translation(NamedTuple):
@@ -107,9 +108,45 @@ class BaseSets:
         return self._found[set_name]
 
 
-def no_counterpart(rules: RuleBase, what: str, target: str) -> RuleBaseError:
-    """Error about something that another format does not have."""
-    return RuleBaseError(f"{rules.name}: {what} has no counterpart in {target}")
+class FormatWriter:
+    """What a writer of a format begins with: a rule base, its sets, and words for its operators.
+
+    Parameters
+    ----------
+    rules : RuleBase
+    target : str
+        Name of the format, for messages.
+
+    Attributes
+    ----------
+    inputs, outputs : dict of str to BaseSets
+        By the name of the variable.
+    """
+
+    def __init__(self, rules: RuleBase, target: str) -> None:
+        self.rules = rules
+        self.target = target
+        self.inputs = {v.name: BaseSets(v) for v in rules.inputs}
+        self.outputs = {v.name: BaseSets(v) for v in rules.outputs}
+
+    def lacks(self, what: str) -> RuleBaseError:
+        """Error about something that the format does not have."""
+        return RuleBaseError(f"{self.rules.name}: {what} has no counterpart in {self.target}")
+
+    def word(self, word: str, allowed: Mapping[str, str], what: str) -> str:
+        """Their word for one of ours, of a mapping from theirs to ours."""
+        for theirs, ours in allowed.items():
+            if ours == word:
+                return theirs
+        raise self.lacks(f"{what} {word}")
+
+    def weight(self, row: Row) -> str:
+        """Weight of a rule, by which formats multiply its strength."""
+        for name in row.sets:
+            weighing = self.rules.operators_of(self.rules.output(name)).weighing
+            if row.weight != 1.0 and weighing != "product":
+                raise self.lacks(f"a confidence that is joined by {weighing}")
+        return written(row.weight)
 
 
 def one_line(text: str, what: str, forbidden: str, target: str) -> str:
