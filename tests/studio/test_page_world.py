@@ -64,7 +64,7 @@ def test_waypoints_are_drawn_dragged_inserted_typed_deleted_and_undone(studio):
         )
         expect(studio.locator(".waypoint")).to_have_count(k)
     studio.keyboard.press("Enter")
-    expect(studio.get_by_label("Maneuver")).to_have_value("waypoints")
+    expect(studio.get_by_label("Maneuver", exact=True)).to_have_value("waypoints")
     rows = studio.locator("table.waypoints tbody tr")
     expect(rows).to_have_count(5)
 

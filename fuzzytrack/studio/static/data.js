@@ -35,7 +35,7 @@ const PLACES = { change: 1, outside: 1, log_likelihood: 2, whiteness: 3 };
 export function mount(element, app) {
   const { store, socket, say } = app;
   const recording = recordingForm(app, run);
-  const picks = trackerList(app);
+  const picks = trackerList(app, "recordedTrackers");
   const compare = action("Track and compare", run, { class: "primary" });
   const { element: progress, cancel, words } = jobBar(app, "track", "Progress of the recording", compare);
   const facts = html("p", { class: "muted what" });
@@ -88,9 +88,9 @@ export function mount(element, app) {
   for (const kind of ["dragover", "dragleave", "drop"]) document.addEventListener(kind, recording.dragged);
 
   function keepers() {
-    const { tracked, recording: name } = store.now;
+    const { tracked, recording: name, recordedTrackers } = store.now;
     if (!tracked) return [{ heading: "Track and compare first" }];
-    const args = { name, trackers: chosenTrackers(store.now), ...argumentsOf(store.now) };
+    const args = { name, trackers: chosenTrackers(recordedTrackers), ...argumentsOf(store.now) };
     return [
       ...numberEntries(tracked.name, tracked, tracked.comparison.rows),
       ...scriptEntries(app, "track", args),
@@ -98,8 +98,8 @@ export function mount(element, app) {
   }
 
   async function run() {
-    const { recording: name } = store.now;
-    const trackers = chosenTrackers(store.now);
+    const { recording: name, recordedTrackers } = store.now;
+    const trackers = chosenTrackers(recordedTrackers);
     if (!name) return say("There is no recording: drop a CSV file, or choose one in the folder.", "error");
     if (!trackers.length) return say("No tracker is chosen: check one in the list, or add one.", "error");
     try {

@@ -5,6 +5,7 @@ import { choice, html } from "./elements.js";
 import { followPoint } from "./explain.js";
 import * as files from "./files.js";
 import { takeBackByEscape } from "./focus.js";
+import { RECORDED } from "./pick.js";
 import { followScenario } from "./scenario.js";
 import { connect } from "./socket.js";
 import { makeStore } from "./store.js";
@@ -25,14 +26,14 @@ const INITIAL = {
   // How.
   points: 41, dragging: false, symmetric: false, several: false, snap: "grid", linked: false, mirror: false, shared: "both",
   shadeVisits: false, palette: "viridis", scheme: "light",
-  trackers: [], wantedRuns: 200, seed: 0, readings: {}, tuneOn: "scenario",
+  trackers: [], recordedTrackers: RECORDED, wantedRuns: 200, seed: 0, readings: {}, tuneOn: "scenario",
   tuning: { tracker: "editor", free: "", trials: 100, folds: 5, runs: 60 },
 };
 const KEPT = [
   "session", "opened", "view", "tab", "cell", "variable", "set", "shown", "colorBy", "against", "axes", "point", "camera",
   "planeRange", "points", "symmetric", "snap", "linked", "mirror", "shared", "shadeVisits", "palette",
   "asked", "ranWith", "resultsTab", "hidden", "sorting", "quantity", "band", "gain", "pair", "walked", "recording",
-  "trackers", "wantedRuns", "seed", "readings", "uploads", "tuneOn", "tuning",
+  "trackers", "recordedTrackers", "wantedRuns", "seed", "readings", "uploads", "tuneOn", "tuning",
 ];
 const SCHEME = "fuzzytrack scheme";
 

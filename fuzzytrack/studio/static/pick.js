@@ -24,13 +24,16 @@ function joined(name, parameters) {
   return [name, ...parameters.filter(([, value]) => value !== "").map((pair) => pair.join("="))].join(":");
 }
 
-/** Texts of the trackers that are checked. */
-export function chosenTrackers({ trackers }) {
+/** The trackers of recordings until others are chosen. */
+export const RECORDED = ["editor", ...FOR_RECORDINGS].map((text) => ({ text, on: true }));
+
+/** Texts of the trackers that are checked in a list of them. */
+export function chosenTrackers(trackers) {
   return trackers.filter(({ on }) => on).map(({ text }) => text);
 }
 
-/** The list; `store.trackers` is [{text, on}]. */
-export function trackerList({ store }) {
+/** The list; what the store has as `key` is [{text, on}]. */
+export function trackerList({ store }, key) {
   const rows = html("ul", { class: "picks" });
   const element = html(
     "div",
@@ -41,15 +44,15 @@ export function trackerList({ store }) {
   const open = new Set();
 
   function change(trackers) {
-    store.set({ trackers });
+    store.set({ [key]: trackers });
   }
 
   function put(index, part) {
-    change(store.now.trackers.map((each, k) => (k === index ? { ...each, ...part } : each)));
+    change(store.now[key].map((each, k) => (k === index ? { ...each, ...part } : each)));
   }
 
   function add(text) {
-    const { trackers } = store.now;
+    const trackers = store.now[key];
     const known = trackers.findIndex((each) => each.text === text);
     if (known >= 0) put(known, { on: true });
     else change([...trackers, { text, on: true }]);
@@ -74,7 +77,7 @@ export function trackerList({ store }) {
   }
 
   function many() {
-    const { scenario, hello, trackers } = store.now;
+    const { scenario, hello } = store.now;
     const all = (texts) => change(texts.map((text) => ({ text, on: true })));
     const own = scenario?.scenario?.trackers ?? [];
     return [
@@ -84,7 +87,7 @@ export function trackerList({ store }) {
         text: "All that are registered",
         run: () => all(["editor", ...hello.trackers.filter(runnable).map(({ name }) => name)]),
       },
-      { text: "None", run: () => change(trackers.map((each) => ({ ...each, on: false }))) },
+      { text: "None", run: () => change(store.now[key].map((each) => ({ ...each, on: false }))) },
     ];
   }
 
@@ -110,7 +113,7 @@ export function trackerList({ store }) {
             class: "quiet",
             title: `Remove ${text}`,
             "aria-label": `Remove ${text}`,
-            onclick: () => change(store.now.trackers.filter((_, k) => k !== index)),
+            onclick: () => change(store.now[key].filter((_, k) => k !== index)),
           },
           icon("remove"),
         ),
@@ -161,7 +164,7 @@ export function trackerList({ store }) {
     );
   }
 
-  store.follow(["trackers", "hello", "scenario", "opened"], ({ trackers, hello }) => {
+  store.follow([key, "hello", "scenario", "opened"], ({ [key]: trackers, hello }) => {
     if (!hello) return;
     keepFocus(element, () => rows.replaceChildren(...trackers.map(rowOf)));
   });

@@ -272,8 +272,10 @@ export function recordingForm(app, taken) {
       each.hidden = !of || (k === 2 && reading.places[2] === "");
       if (!of) return;
       name(of[1], of[2], NOISE);
-      const estimated = described?.noise?.[k]?.error ? shown(described.noise[k].sigma, 3) : null;
-      box.placeholder = estimated ? `≈ ${estimated}` : "estimated";
+      // Of x and y in one field, both.
+      const found = kind.noise.length > 1 ? described?.noise?.slice(k, k + 1) : described?.noise;
+      const estimates = (found ?? []).filter((one) => one.error).map((one) => shown(one.sigma, 3));
+      box.placeholder = estimates.length ? `≈ ${[...new Set(estimates)].join(", ")}` : "estimated";
       show(reading.noise[of[0]] ?? null);
     });
     own.forEach((list, k) => offer(list, "none", reading.own_ship[k]));

@@ -9,7 +9,7 @@ export const title = "Run";
 
 export function mount(element, app) {
   const { store, socket, say } = app;
-  const picks = trackerList(app);
+  const picks = trackerList(app, "trackers");
   const runs = numberField("Runs", "", (value) => store.set({ wantedRuns: value }), {
     least: 1,
     whole: true,
@@ -43,7 +43,7 @@ export function mount(element, app) {
   async function run() {
     const { wantedRuns, seed: wanted, job, state, scenario } = store.now;
     if (job?.kind === "run" && job.state === "running") return;
-    const texts = chosenTrackers(store.now);
+    const texts = chosenTrackers(store.now.trackers);
     if (!texts.length) {
       say("No tracker is chosen: check one in the list, or add one.", "error");
       return;

@@ -103,8 +103,9 @@ export function mount(element, app) {
   }
 
   function choose(text) {
-    const others = store.now.trackers.filter((each) => each.text !== text);
-    store.set({ trackers: [...others, { text, on: true }], view: "run" });
+    const key = store.now.tuneOn === "recording" ? "recordedTrackers" : "trackers";
+    const others = store.now[key].filter((each) => each.text !== text);
+    store.set({ [key]: [...others, { text, on: true }], view: key === "trackers" ? "run" : "data" });
   }
 
   async function openInEditor(text) {

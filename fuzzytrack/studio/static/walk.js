@@ -82,7 +82,7 @@ export function mount(element, app) {
 
   async function ask(now) {
     const { walked, seed, asked: last, resultsTab, connected, scenario, state, view } = now;
-    const texts = last?.trackers ?? chosenTrackers(now);
+    const texts = last?.trackers ?? chosenTrackers(now.trackers);
     tracker.replaceChildren(...texts.map((text) => html("option", { value: text }, text)));
     if (texts.length && !texts.includes(walked.tracker)) {
       store.set({ walked: { ...walked, tracker: texts[0] } });
