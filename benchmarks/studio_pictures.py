@@ -102,7 +102,7 @@ def surface(page: Any) -> None:
 def world(page: Any) -> None:
     """Way-points on the curve of the scenario."""
     open_view(page, "World")
-    page.get_by_label("Maneuver").select_option("waypoints")
+    page.get_by_label("Maneuver", exact=True).select_option("waypoints")
     page.locator("table.waypoints").wait_for()
 
 
@@ -125,11 +125,8 @@ def walk(page: Any) -> None:
 
 
 def data(page: Any) -> None:
-    """The file of a radar, read as the page proposes, with trackers for recordings."""
+    """The file of a radar, read as the page proposes."""
     open_view(page, "Data")
-    choose = page.locator("#pane-data").get_by_role("button", name="Choose", exact=True)
-    choose.click()
-    page.get_by_role("menuitem", name="Those for recordings").click()
     with TemporaryDirectory() as folder:
         path = Path(folder) / "radar.csv"
         write_table(str(path), make_sample("radar", 0).plots)

@@ -65,7 +65,7 @@ def test_rules_sets_and_surfaces(studio):
 
 def test_world_and_results(studio):
     view(studio, "World")
-    studio.get_by_label("Maneuver").select_option("waypoints")
+    studio.get_by_label("Maneuver", exact=True).select_option("waypoints")
     expect(studio.locator("table.waypoints")).to_be_visible()
     studio.get_by_role("button", name="sensor field").click()
     assert findings(studio) == []

@@ -71,7 +71,7 @@ def tabbed(page):
 def test_tab_comes_to_all_controls_and_the_focus_is_seen(sized, view):
     by_keys(sized, view)
     if view == "World":
-        sized.get_by_label("Maneuver").select_option("waypoints")
+        sized.get_by_label("Maneuver", exact=True).select_option("waypoints")
         expect(sized.locator("table.waypoints")).to_be_visible()
     found = tabbed(sized)
     names = [each["name"] for each in found]
