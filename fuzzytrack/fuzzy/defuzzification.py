@@ -81,6 +81,10 @@ def defuzzify(method: str, y: Array, membership: Array) -> Array:
     """
     peak = membership.max(axis=-1, keepdims=True)
     empty = ~(peak > 0)
-    # Scaled to a peak of one, grades near the smallest float keep their ratios in the sums.
-    filled = np.where(empty, 1.0, membership / np.where(empty, 1.0, peak))
+    # Scaled to a peak of one, grades near the smallest float keep their ratios in the sums. None is
+    # above its peak; but NumPy 1.26 also divides ones that fill up its registers, whose results it
+    # drops, and warns of an overflow there.
+    with np.errstate(over="ignore"):
+        scaled = membership / np.where(empty, 1.0, peak)
+    filled = np.where(empty, 1.0, scaled)
     return np.where(empty[..., 0], np.nan, DEFUZZIFIERS[method](y, filled))
