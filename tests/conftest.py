@@ -16,6 +16,23 @@ settings.register_profile("free", _UNTIMED, derandomize=False, max_examples=1000
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 
 
+def _draw_without_modules():
+    """Draw no numbers and texts that stand in the modules of the project that are loaded.
+
+    Which ones are loaded depends on the tests before, and so would the examples. Versions of
+    Hypothesis before 6.131 draw none.
+    """
+    try:
+        from hypothesis.internal.conjecture import providers
+    except ImportError:
+        return
+    providers._get_local_constants = providers.Constants
+
+
+if settings().derandomize:
+    _draw_without_modules()
+
+
 @pytest.fixture(autouse=True)
 def no_figures_are_left():
     """Which tests run before one in the same process depends on the number of processes."""
