@@ -49,7 +49,7 @@ class Job:
     of : int
         How much there is to be done, in units that a reader counts.
     owner : Owner
-        Is told of every change.
+        Is told of every change; after its end no more.
     """
 
     def __init__(self, number: int, kind: str, of: int, owner: Owner) -> None:
@@ -65,6 +65,7 @@ class Job:
         self._begun = self._heard = time.monotonic()
         self._reported = 0.0
         self._ended: float | None = None
+        # Held while it is told what has changed, so that its end is the last of it.
         self._lock = threading.Lock()
 
     @property
@@ -79,7 +80,9 @@ class Job:
 
     def begin(self) -> None:
         """Tell that it runs, before there is progress, which may take a while."""
-        self.owner.report(self, False)
+        with self._lock:
+            if self.running:
+                self.owner.report(self, False)
 
     def progress(self, share: float) -> None:
         """Take in how much is done; called by the work.
@@ -89,19 +92,21 @@ class Job:
         CancelledJobError
             If the job has ended meanwhile.
         """
-        if not self.running:
-            raise CancelledJobError
-        self._heard = time.monotonic()
-        self._share = share
-        if self._heard - self._reported >= _PAUSE:
-            self._reported = self._heard
-            self.owner.report(self, False)
+        with self._lock:
+            if not self.running:
+                raise CancelledJobError
+            self._heard = time.monotonic()
+            self._share = share
+            if self._heard - self._reported >= _PAUSE:
+                self._reported = self._heard
+                self.owner.report(self, False)
 
     def show(self, results: dict[str, Any]) -> None:
         """Take in results of a part of the work; called by the work."""
-        if self.running:
-            self.results = results
-            self.owner.report(self, True)
+        with self._lock:
+            if self.running:
+                self.results = results
+                self.owner.report(self, True)
 
     def end(self, state: str, error: str | None = None) -> bool:
         """End the job, unless it has ended already; whether it has ended by this."""
@@ -109,7 +114,7 @@ class Job:
             if not self.running:
                 return False
             self.state, self.error, self._ended = state, error, time.monotonic()
-        self.owner.report(self, False)
+            self.owner.report(self, False)
         return True
 
     def finish(self, results: dict[str, Any]) -> None:
@@ -119,7 +124,7 @@ class Job:
                 return
             self.results, self._share, self.state = results, 1.0, "done"
             self._ended = time.monotonic()
-        self.owner.report(self, True)
+            self.owner.report(self, True)
 
     def as_json(self, results: bool) -> dict[str, Any]:
         """The job as the page is told of it."""
@@ -159,6 +164,7 @@ class Jobs:
         self._numbers = count(1)
         self._pool: ProcessPoolExecutor | None = None
         self._current: Job | None = None
+        # Held until the processes of a job that is ended are given up: the next one has others.
         self._lock = threading.Lock()
 
     def start(self, kind: str, of: int, work: Work, owner: Owner) -> Job:
@@ -170,7 +176,7 @@ class Jobs:
             If another one is running.
         """
         with self._lock:
-            self.check()
+            self._end_if_stuck()
             current = self._current
             if current is not None and current.running:
                 if current.owner is owner:
@@ -182,7 +188,7 @@ class Jobs:
                         f"a job ({current.kind}) of another page is running; wait for its end, or "
                         "cancel it there"
                     )
-                self._cancel(current)
+                self._end(current, "cancelled")
             job = self._current = Job(next(self._numbers), kind, of, owner)
             pool = self._pool = self._pool or process_pool(_processes())
         # Not one of a pool of threads: a plug-in that hangs would keep the server from ending.
@@ -197,34 +203,37 @@ class Jobs:
         ValueError
             If no such job is known any more, or it is not one of this owner.
         """
-        job = self._current
-        if job is None or job.number != number:
-            raise ValueError(f"job: no job {number} is running")
-        if job.owner is not owner:
-            raise ValueError(f"job: {number} is a job of another page; cancel it there")
-        self._cancel(job)
+        with self._lock:
+            job = self._current
+            if job is None or job.number != number:
+                raise ValueError(f"job: no job {number} is running")
+            if job.owner is not owner:
+                raise ValueError(f"job: {number} is a job of another page; cancel it there")
+            self._end(job, "cancelled")
         return job
 
     def replace(self, job: Job) -> None:
         """End a job, unless it has ended, for another one that is wanted in its place."""
-        self._cancel(job, "replaced")
+        with self._lock:
+            self._end(job, "replaced")
 
-    def check(self) -> None:
+    def close(self) -> None:
+        """End the job that runs, and the processes."""
+        with self._lock:
+            if self._current is not None:
+                self._current.end("cancelled")
+            self._drop()
+
+    def _end_if_stuck(self) -> None:
         """End the job that runs if it has made no progress for too long."""
         job = self._current
         if job is not None and job.running and job.silent > SILENCE:
             why = f"no progress for {SILENCE:.0f} s; a tracker, or a plug-in, may hang"
-            if job.end("failed", why):
-                self._drop()
+            self._end(job, "failed", why)
 
-    def close(self) -> None:
-        """End the job that runs, and the processes."""
-        if self._current is not None:
-            self._current.end("cancelled")
-        self._drop()
-
-    def _cancel(self, job: Job, state: str = "cancelled") -> None:
-        if job.end(state):
+    def _end(self, job: Job, state: str, why: str | None = None) -> None:
+        """End a job with its processes, unless it has ended already."""
+        if job.end(state, why):
             self._drop()
 
     def _drop(self) -> None:
@@ -241,8 +250,9 @@ class Jobs:
         except CancelledJobError:
             pass
         except BrokenExecutor:
-            if self._pool is pool:
-                self._drop()
+            with self._lock:
+                if self._pool is pool:
+                    self._drop()
             job.end("failed", "a process ended, perhaps for lack of memory; try fewer runs")
         except ValueError as failure:
             job.end("failed", self._named(str(failure)))

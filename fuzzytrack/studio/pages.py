@@ -67,6 +67,7 @@ class Page:
         self.studio = studio
         self.session = session
         self._lock = threading.Lock()
+        self._saving = threading.Lock()
         self.version = 0
         self._drags = 0
         self.jobs: dict[str, Job] = {}
@@ -124,7 +125,9 @@ class Page:
 
     def save_draft(self) -> None:
         """Keep texts that are not saved, so that they are there after a start of the server."""
-        with contextlib.suppress(OSError, ValueError):  # the folder may be gone, or be full
+        # One at a time: an older draft must not replace a newer one, or come after it was dropped.
+        with self._saving, contextlib.suppress(OSError, ValueError):
+            # The folder may be gone, or be full.
             self.session.autosave()
 
     @property
@@ -157,8 +160,10 @@ class Page:
 
     def report(self, job: Job, with_results: bool) -> None:
         """Tell the page of a job."""
-        if self._connection is not None:
-            self._connection.send(event("job", job=job.as_json(with_results)))
+        # It may be given up meanwhile, in another thread.
+        connection = self._connection
+        if connection is not None:
+            connection.send(event("job", job=job.as_json(with_results)))
 
 
 class Studio:

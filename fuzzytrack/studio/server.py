@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
+import logging
 import os
 import signal
 import socket
@@ -74,10 +74,11 @@ def serve(
     with listen(host or LOCAL, port) as listening:
         access = Access(host or LOCAL, listening.getsockname()[1], token)
         server = make_server(studio, access)
-        if hasattr(signal, "SIGHUP"):
-            # The terminal was closed.
-            signal.signal(signal.SIGHUP, server.handle_exit)
-        with contextlib.suppress(KeyboardInterrupt), warnings_to_notes():
+        # For good: uvicorn gives signals back when it ends, and one more that comes then would end
+        # this process before its processes are ended.
+        for number in _ends():
+            signal.signal(number, server.handle_exit)
+        with warnings_to_notes():
             threading.Thread(target=studio.warm, daemon=True).start()
             started(f"http://{_written(access)}/#token={token}")
             server.run(sockets=[listening])
@@ -143,6 +144,17 @@ class _Server(uvicorn.Server):
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """End when all that has been asked for is answered, or after a second."""
         self.should_exit = True
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End; what is given up after that second is no error, and is not logged as one."""
+        logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)
+        await super().shutdown(sockets)
+
+
+def _ends() -> list[signal.Signals]:
+    """Signals that end the server: Ctrl-C, a stop of the system, and a terminal that is closed."""
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    return [getattr(signal, name) for name in names if hasattr(signal, name)]
 
 
 def _written(access: Access) -> str:

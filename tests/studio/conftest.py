@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 TOKEN = "a-token-of-the-tests"
 CHROMIUM = Path("/usr/bin/chromium")
@@ -32,7 +33,7 @@ class Client:
 
     def receive(self):
         """The next message: its number and content; a surface as an array."""
-        message = self.socket.recv(timeout=60)
+        message = self.socket.recv(timeout=PATIENCE)
         if isinstance(message, bytes):
             seq, rows, columns, layers, *_ = struct.unpack("<6I", message[:24])
             return seq, np.frombuffer(message[24:], "<f4").reshape(layers, rows, columns)
@@ -92,13 +93,14 @@ class Address:
 
         address = f"ws://{host or self.host}/socket"
         if host is not None:
-            options["sock"] = socket.create_connection(("127.0.0.1", self.port), timeout=30)
+            options["sock"] = socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE)
         if "proxy" in inspect.signature(connect).parameters:
             # Before version 15 of websockets none is used.
             options["proxy"] = None
         return connect(
             address,
             origin=origin or f"http://{self.host}",
+            open_timeout=PATIENCE,
             subprotocols=["fuzzytrack", f"token.{self.token if token is None else token}"],
             compression=None,
             max_size=None,
@@ -137,7 +139,8 @@ class Server(Address):
 
     def close(self):
         self.server.should_exit = True
-        self.thread.join(30)
+        self.thread.join(PATIENCE)
+        assert not self.thread.is_alive()
         self.listening.close()
 
 
@@ -189,7 +192,7 @@ class Program(Address):
 
     def end(self):
         """What it has printed; it has been told to end."""
-        printed, _ = self.process.communicate(timeout=60)
+        printed, _ = self.process.communicate(timeout=PATIENCE)
         return printed
 
 
@@ -210,6 +213,34 @@ def new_program():
 
 
 @pytest.fixture
+def waiting_runs(monkeypatch):
+    """A context in which jobs that make runs wait after their first progress, to its end."""
+    from fuzzytrack.studio import run_jobs
+
+    monte_carlo = run_jobs.monte_carlo
+
+    @contextlib.contextmanager
+    def wait():
+        over = threading.Event()
+
+        def waiting(*given, progress, **options):
+            def report(share):
+                progress(share)
+                over.wait()
+
+            return monte_carlo(*given, progress=report, **options)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(run_jobs, "monte_carlo", waiting)
+            try:
+                yield
+            finally:
+                over.set()
+
+    return wait
+
+
+@pytest.fixture
 def page(server):
     with server.page() as client:
         yield client
@@ -221,15 +252,17 @@ def browser_page(server):
     api = pytest.importorskip("playwright.sync_api", reason="needs Playwright")
     if not CHROMIUM.exists():
         pytest.skip(f"needs Debian's Chromium, {CHROMIUM}")
-    # Under the load of other tests a page may need a while.
-    api.expect.set_options(timeout=60_000)
+    # Milliseconds; under the load of other tests a page may need a while.
+    api.expect.set_options(timeout=1000 * PATIENCE)
     mistakes = []
     with api.sync_playwright() as player:
         browser = player.chromium.launch(
-            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"]
+            executable_path=CHROMIUM,
+            args=["--no-sandbox", "--disable-gpu"],
+            timeout=1000 * PATIENCE,
         )
         page = browser.new_page(viewport={"width": 1280, "height": 800})
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(1000 * PATIENCE)
         page.on("pageerror", lambda mistake: mistakes.append(mistake))
         page.goto(f"http://{server.host}/#token={TOKEN}")
         yield page

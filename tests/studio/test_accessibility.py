@@ -73,7 +73,7 @@ def test_world_and_results(studio):
     view(studio, "Run")
     studio.get_by_role("textbox", name="Runs").first.fill("20")
     studio.keyboard.press("Control+Enter")
-    expect(studio.locator("#pane-run [role=status]")).to_contain_text("20 runs in", timeout=90_000)
+    expect(studio.locator("#pane-run [role=status]")).to_contain_text("20 runs in")
     for tab in ("All trackers", "Side by side", "One run"):
         studio.get_by_role("button", name=tab).click()
         assert findings(studio) == [], tab
@@ -84,5 +84,5 @@ def test_own_data(studio):
     assert findings(studio) == []
     files = {"name": "mine.csv", "mimeType": "text/csv", "buffer": CSV.encode()}
     studio.locator("#pane-data input[type=file]").set_input_files(files)
-    expect(studio.locator("#pane-data")).to_contain_text("60 plots", timeout=60_000)
+    expect(studio.locator("#pane-data")).to_contain_text("60 plots")
     assert findings(studio) == []

@@ -4,10 +4,11 @@ import threading
 import warnings
 
 import pytest
+from waiting import PATIENCE
 
 from fuzzytrack.errors import TrackWarning
 from fuzzytrack.studio import jobs
-from fuzzytrack.studio.jobs import Jobs
+from fuzzytrack.studio.jobs import CancelledJobError, Job, Jobs
 from fuzzytrack.studio.notes import warnings_to_notes
 
 
@@ -26,7 +27,7 @@ class Reports:
             self.ended.set()
 
     def end(self):
-        assert self.ended.wait(30)
+        assert self.ended.wait(PATIENCE)
         return self.told[-1]
 
 
@@ -62,7 +63,7 @@ def test_a_job_that_is_canceled_stays_so(found):
     reports, go = Reports(), threading.Event()
 
     def work(job, pool):
-        go.wait(30)
+        go.wait(PATIENCE)
         job.progress(0.9)
         return {}
 
@@ -83,7 +84,7 @@ def test_a_job_goes_on_until_it_is_ended_by_its_page_or_for_that_of_another_one_
     found,
 ):
     one, other, go = Reports(), Reports(), threading.Event()
-    found.start("tune", 1, lambda job, pool: {"heard": go.wait(30)}, one)
+    found.start("tune", 1, lambda job, pool: {"heard": go.wait(PATIENCE)}, one)
     with pytest.raises(ValueError, match=r"a job \(tune\) of another page is running; .* there"):
         found.start("run", 1, lambda job, pool: {}, other)
     one.gone = True
@@ -121,3 +122,42 @@ def test_warnings_in_a_job_become_its_notes(found):
     with warnings_to_notes():
         found.start("run", 1, work, reports)
         assert reports.end()["results"] == {"notes": ["the gains do not suit"]}
+
+
+def test_nothing_is_told_of_a_job_after_its_end():
+    reports = Reports()
+    job = Job(1, "run", 1, reports)
+    assert job.end("cancelled")
+    # Its thread may begin, or go on, only now.
+    job.begin()
+    job.show({})
+    with pytest.raises(CancelledJobError):
+        job.progress(0.5)
+    job.finish({})
+    assert [each["state"] for each in reports.told] == ["cancelled"]
+
+
+def test_a_job_has_no_processes_of_one_that_is_being_canceled(found):
+    pools, go = [], threading.Event()
+    last = Reports()
+
+    def work(job, pool):
+        pools.append(pool)
+        go.wait(PATIENCE)
+        return {}
+
+    class Eager(Reports):
+        def report(self, job, with_results):
+            if not job.running:
+                other.start()
+                # If it does not wait for the end of the cancellation, it begins within this time.
+                other.join(0.1)
+
+    first = Eager()
+    other = threading.Thread(target=lambda: found.start("run", 1, work, last))
+    number = found.start("run", 1, work, first).number
+    found.cancel(number, first)
+    go.set()
+    other.join(PATIENCE)
+    assert last.end()["state"] == "done"
+    assert len(set(pools)) == 2

@@ -6,6 +6,7 @@ import threading
 import numpy as np
 import pytest
 from typer.testing import CliRunner
+from waiting import PATIENCE
 
 from fuzzytrack.cli.app import app
 from fuzzytrack.cli.studio_snippets import command_line
@@ -117,8 +118,8 @@ def test_trackers_run_and_the_table_has_the_numbers_of_the_testbed(studio):
     view(studio, "Run")
     run(studio, 20)
     rows = studio.locator(".results-all .result-table tbody tr")
-    expect(rows).to_have_count(5, timeout=60_000)
-    expect(studio.locator("#pane-run [role=status]")).to_contain_text("20 runs in", timeout=60_000)
+    expect(rows).to_have_count(5)
+    expect(studio.locator("#pane-run [role=status]")).to_contain_text("20 runs in")
     expected = monte_carlo("turn", TRACKERS, runs=20, seed=3)
     for name, row in zip(TRACKERS, expected.table(), strict=True):
         shown = rows.filter(has=studio.locator(f'button[title*="{name} in"]'))
@@ -161,13 +162,14 @@ def test_trackers_run_and_the_table_has_the_numbers_of_the_testbed(studio):
     expect(rows).to_have_count(5)
 
 
-def test_a_run_is_canceled_and_another_one_can_begin(studio):
+def test_a_run_is_canceled_and_another_one_can_begin(studio, waiting_runs):
     view(studio, "Run")
-    run(studio, 100_000)
     status = studio.locator("#pane-run [role=status]")
-    expect(status).to_contain_text("left", timeout=60_000)
-    studio.get_by_role("button", name="Cancel").first.click()
-    expect(status).to_contain_text("Canceled after")
+    with waiting_runs():
+        run(studio, 100_000)
+        expect(status).to_contain_text("left")
+        studio.get_by_role("button", name="Cancel").first.click()
+        expect(status).to_contain_text("Canceled after")
     expect(studio.locator("#pane-run").get_by_role("button", name="Run")).to_be_visible()
 
 
@@ -181,11 +183,11 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server, mon
         "radar.csv: no columns x, y.Use range, azimuth as range and azimuth"
     )
     studio.get_by_role("button", name="Use range, azimuth as range and azimuth").click()
+    facts = studio.locator("#pane-data .what")
     with warnings_to_notes():
         studio.get_by_role("button", name="Use track as the track column").click()
-    facts = studio.locator("#pane-data .what")
-    expect(facts).to_contain_text("6 tracks", timeout=60_000)
-    expect(studio.get_by_text("radar.csv is being")).not_to_be_visible()
+        expect(facts).to_contain_text("6 tracks")
+        expect(studio.get_by_text("radar.csv is being")).not_to_be_visible()
     studio.get_by_role("button", name="Save a picture of innovations").click()
     with studio.expect_download() as download:
         studio.get_by_role("menuitem", name="SVG").click()
@@ -195,22 +197,22 @@ def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server, mon
     expect(studio.get_by_role("combobox", name="Range σ")).to_have_attribute("placeholder", "≈ 30")
     studio.get_by_role("combobox", name="Range σ").fill("25")
     studio.keyboard.press("Enter")
-    expect(facts).to_contain_text("σ 25 m", timeout=60_000)
+    expect(facts).to_contain_text("σ 25 m")
     status = studio.locator("#pane-data .progress [role=status]")
-    expect(status).to_contain_text("Done in", timeout=60_000)
+    expect(status).to_contain_text("Done in")
     read = threading.Event()
     with monkeypatch.context() as patch:
         # The work waits where it reads the file.
-        patch.setattr(Recorded, "read", lambda self: read.wait(60) and None)
+        patch.setattr(Recorded, "read", lambda self: read.wait(PATIENCE) and None)
         studio.get_by_role("button", name="Track and compare").click()
         expect(status).to_contain_text("Starting")
         studio.locator("#pane-data").get_by_role("button", name="Cancel").click()
         expect(status).to_have_text("Canceled after 0 %.")
         read.set()
     studio.get_by_role("button", name="Track and compare").click()
-    expect(status).to_contain_text("Done in", timeout=60_000)
+    expect(status).to_contain_text("Done in")
     studio.reload()
-    expect(facts).to_contain_text("σ 25 m", timeout=60_000)
+    expect(facts).to_contain_text("σ 25 m")
 
 
 @pytest.fixture(scope="module")
@@ -255,7 +257,7 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(
     studio.keyboard.press("Escape")
     studio.get_by_label("Track column").select_option("id")
     rows = studio.locator("#pane-data .result-table tbody tr")
-    expect(rows).to_have_count(5, timeout=60_000)
+    expect(rows).to_have_count(5)
     expect(studio.locator("#pane-data")).to_contain_text("220 plots")
     studio.get_by_role("combobox", name="Track", exact=True).select_option("1")
     # The noise may be in a column, and the table fits on a tablet.
@@ -278,7 +280,7 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(
         studio.get_by_role("textbox", name=label).fill(text)
         studio.keyboard.press("Tab")
     studio.get_by_role("button", name="Tune", exact=True).click()
-    expect(studio.locator(".tuned")).to_contain_text("worth it", timeout=90_000, ignore_case=True)
+    expect(studio.locator(".tuned")).to_contain_text("worth it", ignore_case=True)
     studio.get_by_role("button", name="Open in the editor").click()
     expect(studio.locator("#bar")).to_contain_text("not saved")
     expect(studio.locator("#pane-rules")).to_be_visible()

@@ -7,6 +7,7 @@ import threading
 import numpy as np
 import pytest
 from typer.testing import CliRunner
+from waiting import PATIENCE
 
 from fuzzytrack.cli.app import app
 from fuzzytrack.cli.studio_snippets import command_line
@@ -249,7 +250,7 @@ def test_tracking_is_canceled_by_its_page_or_when_something_else_is_said_of_the_
     page.ask("upload", name="mine.csv", text=csv, id="id")
     with monkeypatch.context() as patch:
         # The work waits where it reads the file.
-        patch.setattr(Recorded, "read", lambda self: read.wait(60) and None)
+        patch.setattr(Recorded, "read", lambda self: read.wait(PATIENCE) and None)
         number = page.ask("track", name="mine.csv", trackers=TRACKERS, id="id")["job"]
         page.ask("cancel", job=number)
         assert page.job(number)[-1]["state"] == "cancelled"

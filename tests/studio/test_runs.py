@@ -22,7 +22,7 @@ def run_script(text):
     return printed
 
 
-def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page, server):
+def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page, server, waiting_runs):
     page.ask("open_scenario", name="turn")
     events = run_and_wait(page, trackers=["editor", *TRACKERS], runs=150, seed=3)
     last = events[-1]
@@ -69,19 +69,20 @@ def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page, server):
     gains = page.ask("gains")
     assert sum(count for _, _, count in gains["visited"]) == 150 * 18 * 2
 
-    number = page.ask("run", trackers=["editor"], runs=100_000, seed=0)["job"]
-    assert "a job (run) is running" in page.refused("run", trackers=["editor"], runs=1)
-    # Edits go on meanwhile.
-    assert page.ask("set_cell", row=0, column=0, text="S-L")["state"]
-    with server.page() as other:
-        said = "a job (run) of another page is running; wait for its end, or cancel it there"
-        assert other.refused("tune") == said
-        assert other.refused("cancel", job=number) == (
-            f"job: {number} is a job of another page; cancel it there"
-        )
-    page.ask("cancel", job=number)
-    assert page.job(number)[-1]["state"] == "cancelled"
-    assert page.ask("cancel", job=number)["job"]["state"] == "cancelled"
+    with waiting_runs():
+        number = page.ask("run", trackers=["editor"], runs=100_000, seed=0)["job"]
+        assert "a job (run) is running" in page.refused("run", trackers=["editor"], runs=1)
+        # Edits go on meanwhile.
+        assert page.ask("set_cell", row=0, column=0, text="S-L")["state"]
+        with server.page() as other:
+            said = "a job (run) of another page is running; wait for its end, or cancel it there"
+            assert other.refused("tune") == said
+            assert other.refused("cancel", job=number) == (
+                f"job: {number} is a job of another page; cancel it there"
+            )
+        page.ask("cancel", job=number)
+        assert page.job(number)[-1]["state"] == "cancelled"
+        assert page.ask("cancel", job=number)["job"]["state"] == "cancelled"
     # The next one has new processes.
     assert run_and_wait(page, trackers=["editor"], runs=5)[-1]["state"] == "done"
 

@@ -7,11 +7,12 @@ import json
 import pytest
 
 pytest.importorskip("uvicorn", reason="needs the extra studio")
+from waiting import PATIENCE
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 
 def get(server, path, host=None, method="GET"):
-    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30)
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=PATIENCE)
     connection.request(method, path, headers={"Host": host or server.host})
     answer = connection.getresponse()
     content = answer.read()
@@ -90,7 +91,7 @@ def test_a_socket_answers_with_the_protocol_and_not_with_the_token(server):
 def test_before_hello_nothing_is_done(server):
     with server.connect() as socket:
         socket.send('{"seq": 1, "command": "undo"}')
-        assert "say hello first" in json.loads(socket.recv(timeout=30))["error"]
+        assert "say hello first" in json.loads(socket.recv(timeout=PATIENCE))["error"]
 
 
 def test_a_message_of_two_mebibytes_ends_the_socket_only(server):
@@ -135,7 +136,7 @@ def test_a_page_that_is_opened_twice_goes_on_in_the_newer(server):
     with server.page() as first, server.page(first.hello["session"]) as second:
         assert "opened again elsewhere" in first.receive()[1]["text"]
         with pytest.raises(ConnectionClosed) as caught:
-            first.socket.recv(timeout=30)
+            first.socket.recv(timeout=PATIENCE)
         assert caught.value.rcvd.code == 4001
         assert second.ask("files")["files"] == []
 
@@ -146,12 +147,12 @@ def test_eight_pages_can_be_open(tmp_path, new_server):
         pages = [stack.enter_context(server.page()) for _ in range(8)]
         with server.connect() as ninth:
             ninth.send('{"seq": 1, "command": "hello"}')
-            assert "8 pages are open" in json.loads(ninth.recv(timeout=30))["error"]
+            assert "8 pages are open" in json.loads(ninth.recv(timeout=PATIENCE))["error"]
             pages[3].socket.close()
             # The one that was closed makes room.
             for seq in range(2, 50):
                 ninth.send(json.dumps({"seq": seq, "command": "hello"}))
-                found = json.loads(ninth.recv(timeout=30))
+                found = json.loads(ninth.recv(timeout=PATIENCE))
                 if "result" in found:
                     break
             assert found["result"]["session"] not in {page.hello["session"] for page in pages}

@@ -8,6 +8,7 @@ import weakref
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 from fuzzytrack.studio import threads
 from fuzzytrack.studio.threads import Threads
@@ -19,7 +20,7 @@ def test_what_hangs_is_given_up_and_not_begun_without_end(monkeypatch):
     go = threading.Event()
 
     def late():
-        go.wait(60)
+        go.wait(PATIENCE)
         raise KeyError("nobody hears of this")
 
     async def work():
@@ -62,9 +63,13 @@ def test_what_was_at_work_when_an_error_was_raised_is_freed_at_once():
         with contextlib.suppress(ValueError):
             await Threads().run(wrong)
 
+    before = set(threading.enumerate())
     gc.disable()
     try:
         asyncio.run(work())
+        # The thread holds its error until it ends, which may be after it was taken in here.
+        for thread in set(threading.enumerate()) - before:
+            thread.join()
         assert kept[0]() is None
     finally:
         gc.enable()
