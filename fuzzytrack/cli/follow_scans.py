@@ -108,7 +108,10 @@ def _check(files: list[str], output: str | None) -> None:
 
 def _stream(place: str) -> Stream:
     if is_address(place):
-        return DatagramStream(place)
+        stream = DatagramStream(place)
+        # What is sent before is lost.
+        say_aside(f"listening at {stream.address}")
+        return stream
     if sys.stdin is None:
         raise ValueError("--follow: reads standard input, which is closed; pipe the feed into it")
     return LineStream(sys.stdin.fileno())

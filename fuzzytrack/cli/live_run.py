@@ -20,6 +20,9 @@ from fuzzytrack.recordings.state_file import StateFile
 
 __all__ = ["Feed", "LiveRun", "SavedState", "Stream"]
 
+# Seconds of one wait. Ctrl-C that comes just before a wait does not end it, and is seen after it.
+_LONGEST_WAIT = 1.0
+
 
 class Stream(Protocol):
     """Items of a feed as they come."""
@@ -169,12 +172,14 @@ class LiveRun:
             if self._file is not None and self._file.due_in == 0.0:
                 self._save(self._file)
 
-    def _timeout(self) -> float | None:
-        """Seconds until something is due without an item; None if nothing is."""
-        due = [] if self._file is None else [self._file.due_in]
+    def _timeout(self) -> float:
+        """Seconds until something is due without an item, or a second at most."""
+        due = [_LONGEST_WAIT]
+        if self._file is not None and self._file.due_in is not None:
+            due.append(self._file.due_in)
         if self._pause_at is not None:
             due.append(max(0.0, self._pause_at - time.monotonic()))
-        return min((each for each in due if each is not None), default=None)
+        return min(due)
 
     def _end(self, *, interrupted: bool) -> None:
         if self._resumed is not None and not interrupted:

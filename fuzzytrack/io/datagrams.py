@@ -38,7 +38,7 @@ class DatagramStream:
     Parameters
     ----------
     address : str
-        ``udp://127.0.0.1:PORT``.
+        ``udp://127.0.0.1:PORT``; any free port for 0.
 
     Raises
     ------
@@ -52,6 +52,7 @@ class DatagramStream:
         found = _ADDRESS.fullmatch(address)
         if found is None or not 0 <= int(found[2]) < 1 << 16:
             raise ValueError(f"{address}: expected udp://127.0.0.1:PORT, a port of this computer")
+        self._host = found[1]
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
@@ -66,6 +67,11 @@ class DatagramStream:
     def port(self) -> int:
         """Number of the port."""
         return int(self._socket.getsockname()[1])
+
+    @property
+    def address(self) -> str:
+        """What it listens to, as it is given, with the number of the port."""
+        return f"udp://{self._host}:{self.port}"
 
     def take(self, timeout: float | None = None) -> list[bytes] | None:
         """Take the datagrams that are there, and wait for some if there are none.

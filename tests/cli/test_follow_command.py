@@ -9,11 +9,11 @@ import shlex
 import signal
 import subprocess
 import sys
-import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
+from waiting import PATIENCE, wait_until
 
 import fuzzytrack as ft
 from fuzzytrack.cli.app import app
@@ -21,8 +21,6 @@ from fuzzytrack.recordings.live_state import LiveState
 
 ROOT = Path(__file__).resolve().parents[2]
 FIXED = ["--tracker", "fixed:alpha=0.5:beta=0.3", "--no-compile"]
-# Seconds after which a process hangs.
-PATIENCE = 60
 
 
 @contextmanager
@@ -219,12 +217,8 @@ def test_a_reader_that_goes_away_ends_the_run_without_a_traceback():
         send(process, "t,x", "0,1")
         answer(process)
         process.stdout.close()
-        for k in range(1, 200):
-            try:
-                send(process, f"{k},1")
-            except BrokenPipeError:
-                break
-            time.sleep(0.01)
+        # Its answer cannot be written.
+        send(process, "1,1")
         assert process.wait(PATIENCE) == 0
         assert "Traceback" not in process.stderr.read().decode()
 
@@ -263,11 +257,11 @@ def test_a_killed_run_goes_on_from_its_last_state(tmp_path, monkeypatch, follow)
     given = [*OPTIONS, "-o", parts, "--state", state]
     with following(*given) as process:
         send(process, *lines[:20])
-        begin = time.monotonic()
-        while not os.path.exists(state) and time.monotonic() < begin + PATIENCE:
-            time.sleep(0.05)
+        wait_until(lambda: os.path.exists(state), process)
+        answered = os.path.getsize(parts)
         send(process, *lines[20:30])
-        time.sleep(0.5)
+        # Answers that the state does not know of.
+        wait_until(lambda: os.path.getsize(parts) > answered, process)
         process.send_signal(signal.SIGKILL)
         process.wait(PATIENCE)
     assert follow("\n".join(lines), *given)[0] == 0

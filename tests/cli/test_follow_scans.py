@@ -1,21 +1,20 @@
 """The command `scan --follow`: plots that come through a pipe or a port."""
 
 import os
+import re
 import signal
 import socket
 import struct
 import subprocess
 import sys
-import time
 from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from waiting import PATIENCE, wait_until
 
 from fuzzytrack.recordings.scan_state import ScanState
 
-# Seconds after which a process hangs.
-PATIENCE = 60
 COMMAND = (sys.executable, "-m", "fuzzytrack", "scan")
 
 
@@ -35,7 +34,7 @@ def test_a_pipe_gives_what_a_file_gives(run, csv, tmp_path):
     assert run("scan", path, "-o", out).exit_code == 0
     done = subprocess.run(
         [*COMMAND, "-", "--follow"], input=harbor(), capture_output=True, text=True, check=False,
-        timeout=120,
+        timeout=PATIENCE,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stdout == out.read_text()
@@ -73,16 +72,10 @@ def following(*options):
         process.communicate(timeout=PATIENCE)
 
 
-def _wait_for_file(path):
-    begin = time.monotonic()
-    while not os.path.exists(path) and time.monotonic() < begin + PATIENCE:
-        time.sleep(0.05)
-
-
 def _follow(text, *options):
     return subprocess.run(
         [*COMMAND, "-", "--follow", *options], input=text, capture_output=True, text=True,
-        check=False, timeout=120,
+        check=False, timeout=PATIENCE,
     )  # fmt: skip
 
 
@@ -95,7 +88,7 @@ def test_a_run_that_was_killed_within_a_scan_goes_on_from_its_state(way, csv, tm
     with following(*given) as process:
         process.stdin.write("".join(lines[:26]).encode())
         process.stdin.flush()
-        _wait_for_file(state)
+        wait_until(lambda: os.path.exists(state), process)
         process.send_signal(signal.SIGKILL)
         process.wait(PATIENCE)
     # What it has written after its last save is cut off.
@@ -134,7 +127,7 @@ def test_ctrl_c_within_a_scan_saves_it_and_ends_with_status_130(tmp_path):
     with following("--scan", "scan", "--state", str(state)) as process:
         process.stdin.write("".join(harbor().splitlines(keepends=True)[:4]).encode())
         process.stdin.flush()
-        _wait_for_file(state)
+        wait_until(state.exists, process)
         process.send_signal(signal.SIGINT)
         assert process.wait(PATIENCE) == 130
         said = process.stderr.read().decode()
@@ -156,25 +149,24 @@ def block(plots):
 
 def test_datagrams_of_asterix(tmp_path):
     pytest.importorskip("asterix.generated", reason="libasterix is not installed")
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
     # A range in 1/256 nmi: the noise is that of its steps.
-    command = [*COMMAND, f"udp://127.0.0.1:{port}", "--follow", "--period", "1.5",
+    command = [*COMMAND, "udp://127.0.0.1:0", "--follow", "--period", "1.5",
                "--sigma-range", "3", "--sigma-azimuth", "0.1"]  # fmt: skip
     out = tmp_path / "answers.csv"
     with out.open("wb") as stream, subprocess.Popen(
         command, stdout=stream, stderr=subprocess.PIPE, text=True
     ) as process, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:  # fmt: skip
         try:
-            _wait_for(port, process)
+            line = process.stderr.readline()
+            listening = re.fullmatch(r"listening at udp://127\.0\.0\.1:(\d+)\n", line)
+            assert listening, line + process.stderr.read()
+            address = "127.0.0.1", int(listening[1])
             for k in range(25):
                 plots = [(1.5 * k, 900 + 4.5 * k, 20), (1.5 * k, 700, 200 + 0.3 * k)]
-                sender.sendto(block(plots), ("127.0.0.1", port))
-                time.sleep(0.002)
-            sender.sendto(b"0\xff\xff", ("127.0.0.1", port))
-            sender.sendto(b"", ("127.0.0.1", port))
-            _, said = process.communicate(timeout=120)
+                sender.sendto(block(plots), address)
+            sender.sendto(b"0\xff\xff", address)
+            sender.sendto(b"", address)
+            _, said = process.communicate(timeout=PATIENCE)
         finally:
             process.kill()
     assert process.returncode == 0, said
@@ -207,16 +199,3 @@ def test_asterix_in_and_out_over_midnight(run, tmp_path):
     assert [line.split()[0] for line in again.stdout.splitlines() if line[:1] == "T"] == [
         "T1", "T2",
     ]  # fmt: skip
-
-
-def _wait_for(port, process):
-    """Wait until the port is listened to."""
-    for _ in range(600):
-        if process.poll() is not None:
-            return
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-            try:
-                other.bind(("127.0.0.1", port))
-            except OSError:
-                return
-        time.sleep(0.05)

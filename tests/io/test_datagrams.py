@@ -21,6 +21,7 @@ def test_addresses():
 def test_datagrams_as_they_come_until_an_empty_one():
     stream = DatagramStream("udp://127.0.0.1:0")
     try:
+        assert stream.address == f"udp://127.0.0.1:{stream.port}"
         assert stream.take(0.0) == []
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             for part in (b"one", b"two", b"", b"after the end"):
@@ -32,7 +33,7 @@ def test_datagrams_as_they_come_until_an_empty_one():
         assert found == [b"one", b"two"]
         assert stream.take(0.0) is None
         with pytest.raises(OSError, match="in use"):
-            DatagramStream(f"udp://127.0.0.1:{stream.port}")
+            DatagramStream(stream.address)
     finally:
         stream.close()
 
