@@ -102,15 +102,20 @@ def test_files_that_a_page_names():
         (["mkdir d; true -o d"], "", "does not write d"),
         (["true"], "`a.csv`", "there is no a.csv"),
         (['test "$(env | grep -c ^FUZZY)" = 0'], "", None),
-        (["sleep 9"], "", "hangs"),
     ],
 )
 def test_a_walk(lines, rest, fault, tmp_path, monkeypatch):
     monkeypatch.setenv("FUZZY_SECRET", "not here")
-    monkeypatch.setitem(WALK["run"].__globals__, "LONGEST", 2.0)
     (tmp_path / "page.md").write_text(page_with(*lines, rest=rest))
     found = WALK["walk"]("page.md", tmp_path, tmp_path)
     assert [fault in each for each in found] == ([True] if fault else [])
+
+
+def test_a_command_that_hangs_ends_a_walk(tmp_path, monkeypatch):
+    monkeypatch.setitem(WALK["run"].__globals__, "LONGEST", 0.1)
+    (tmp_path / "page.md").write_text(page_with("sleep 60"))
+    (fault,) = WALK["walk"]("page.md", tmp_path, tmp_path)
+    assert "hangs" in fault
 
 
 def test_code_of_a_page_is_run_after_its_commands(tmp_path):

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from waiting import PATIENCE
 
 from fuzzytrack.fuzzy.loading import rulebase_path
 from fuzzytrack.lanes import runner
@@ -126,8 +127,9 @@ def test_processes_know_the_script(run, script):
     assert numbers(mine) == numbers(run(*words, "fixed:alpha=0.4:beta=0.2"))
 
 
-def test_a_cluster_knows_the_script(run, script):
+def test_a_cluster_knows_the_script(run, script, monkeypatch):
     distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr("fuzzytrack.workers._PATIENCE", PATIENCE)
     words = ("testbed", "constant-velocity", "--runs", 5, "--json", "--trackers")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=":0"

@@ -9,6 +9,7 @@ from html import unescape
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 from fuzzytrack import workers
 from fuzzytrack.cli import testbed as experimenting
@@ -119,8 +120,9 @@ def test_processes_give_the_same_numbers(run):
     assert run(*words, "--jobs", 2).stdout == run(*words).stdout
 
 
-def test_cluster_gives_the_same_numbers(run):
+def test_cluster_gives_the_same_numbers(run, monkeypatch):
     distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(workers, "_PATIENCE", PATIENCE)
     words = ("testbed", "constant-velocity", "--trackers", TRACKERS, "--runs", 5, "--json")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0"

@@ -60,7 +60,8 @@ def test_a_cluster_that_loses_a_worker(files, tmp_path):
             executor=client.get_executor(), progress=kill_one,
         )  # fmt: skip
         assert killed
-        assert killed[0] not in client.run(os.getpid).values()
+        # The scheduler may not have noticed yet: its answer is an error then.
+        assert killed[0] not in client.run(os.getpid, on_error="return").values()
     assert sorted_rows(tmp_path / "there") == sorted_rows(tmp_path / "here")
     assert (there.tracks, there.plots) == (here.tracks, here.plots) == (30, 1500)
     assert there.summary == pytest.approx(here.summary, rel=1e-12)

@@ -40,6 +40,7 @@ def test_a_cluster_that_loses_a_worker(monkeypatch):
             SCENARIO, TRACKERS, 60, 3, executor=client.get_executor(), progress=kill_one
         )
         assert killed
-        assert killed[0] not in client.run(os.getpid).values()
+        # The scheduler may not have noticed yet: its answer is an error then.
+        assert killed[0] not in client.run(os.getpid, on_error="return").values()
     for name in ("predicted", "filtered", "measured"):
         np.testing.assert_array_equal(getattr(there, name), getattr(here, name))
