@@ -147,20 +147,22 @@ class Server(Address):
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     pytest.importorskip("uvicorn", reason="needs the extra studio")
-    from fuzzytrack.studio import jobs
+    from fuzzytrack.studio import jobs, threads
 
     with pytest.MonkeyPatch.context() as patch:
         # A second process takes as long to start as it saves.
         patch.setattr(jobs, "_processes", lambda: 1)
+        patch.setattr(threads, "SECONDS", PATIENCE)
         found = Server(tmp_path_factory.mktemp("studio"))
         yield found
         found.close()
 
 
 @pytest.fixture
-def new_server():
+def new_server(monkeypatch):
     """Start a server for a folder; it is closed with the test."""
     pytest.importorskip("uvicorn", reason="needs the extra studio")
+    monkeypatch.setattr("fuzzytrack.studio.threads.SECONDS", PATIENCE)
     made = []
 
     def start(folder):
