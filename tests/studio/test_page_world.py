@@ -267,7 +267,7 @@ def test_a_dropped_recording_is_compared_and_a_tuned_rule_base_opens(
     expect(studio.get_by_role("alert")).to_contain_text("column true_x")
     studio.get_by_role("combobox", name="Plot σ").fill("9,5")
     studio.keyboard.press("Tab")
-    expect(studio.locator("#pane-data .what")).to_contain_text("σ 9.5 m", timeout=60_000)
+    expect(studio.locator("#pane-data .what")).to_contain_text("σ 9.5 m")
     expect(rows.first.locator('[data-key="filtered"]')).to_be_visible()
     size = studio.viewport_size
     studio.set_viewport_size({"width": 820, "height": 1180})
