@@ -7,8 +7,6 @@ import threading
 import pytest
 from hypothesis import HealthCheck, settings
 
-from fuzzytrack.kernels.cache import VARIABLE, KernelFolder
-
 # No test depends on time: a slow machine is no defect. `make test` tries the same examples in every
 # run, `make lowest` fewer; `make fuzz` draws new ones, and more of them.
 _UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -38,6 +36,8 @@ if settings().derandomize:
 @pytest.fixture(scope="session", autouse=True)
 def compiled_code_is_kept(tmp_path_factory):
     """Keep compiled code for other processes, also for a user without a home folder."""
+    from fuzzytrack.kernels.cache import VARIABLE, KernelFolder
+
     with pytest.MonkeyPatch.context() as patch:
         if VARIABLE not in os.environ and KernelFolder.of_user().problem() is not None:
             patch.setenv(VARIABLE, str(tmp_path_factory.mktemp("kernels")))
