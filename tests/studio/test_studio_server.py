@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import json
+import threading
 
 import pytest
 
@@ -193,3 +194,20 @@ def test_a_draft_of_a_closed_page_is_opened_by_another_and_goes_when_saved(tmp_p
         page.ask("save", name="mine.yaml")
         own.save_draft()
         assert list(tmp_path.glob(".draft-*")) == []
+
+
+def test_work_that_is_given_up_at_the_end_is_not_logged(tmp_path, new_server, monkeypatch, caplog):
+    go = threading.Event()
+    server = new_server(tmp_path)
+
+    def save_draft(page):
+        # As on a slow disk; the end of the server itself waits for none.
+        if threading.current_thread() is not server.thread:
+            go.wait(PATIENCE)
+
+    monkeypatch.setattr("fuzzytrack.studio.pages.Page.save_draft", save_draft)
+    with server.page() as page:
+        assert page.ask("files")["files"] == []
+        server.close()
+    go.set()
+    assert [record for record in caplog.records if record.name == "uvicorn.error"] == []
