@@ -36,11 +36,11 @@ export function jobBar({ store, socket, say }, kind, label, start) {
   return { element: html("div", { class: "progress" }, bar, words), cancel, words };
 }
 
-// Until there is progress; a tuning compiles its trackers before.
+// Until there is progress.
 const STARTING = {
   run: "Starting…",
   track: "Starting: the plots and the trackers are read…",
-  tune: "Starting: the trackers are compiled first, which may take a minute.",
+  tune: "Starting: the data are read, or simulated…",
 };
 
 /** A job in words. */
