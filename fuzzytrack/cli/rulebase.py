@@ -10,7 +10,7 @@ import typer
 
 from fuzzytrack.cli import options
 from fuzzytrack.cli.complaints import Command, one_line
-from fuzzytrack.cli.output import print_json, print_table, say
+from fuzzytrack.cli.output import print_json, print_table, progress, say
 from fuzzytrack.cli.pictures import save_picture
 from fuzzytrack.cli.rulebase_export import export
 from fuzzytrack.cli.rulebase_tables import print_explanation, print_rulebase, review_lines
@@ -103,7 +103,8 @@ def check(
     wrong = False
     for file in files:
         try:
-            found = review(load_rulebase(file))
+            with progress("checking") as watch:
+                found = review(load_rulebase(file), progress=watch)
         except (RuleBaseError, ValueError) as error:
             wrong = True
             typer.echo(_with_file(error, file), err=True)

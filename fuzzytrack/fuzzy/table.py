@@ -12,6 +12,7 @@ from fuzzytrack.arrays import Array
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.variable import Variable
 from fuzzytrack.reprs import summary
+from fuzzytrack.tasks import Progress
 
 __all__ = ["InterpolationTable", "build_table", "default_nodes"]
 
@@ -69,7 +70,10 @@ def default_nodes(n_inputs: int) -> int:
 
 
 def build_table(
-    rulebase: RuleBase, evaluate: Callable[[Array], dict[str, Array]], nodes: int
+    rulebase: RuleBase,
+    evaluate: Callable[[Array], dict[str, Array]],
+    nodes: int,
+    progress: Progress | None = None,
 ) -> InterpolationTable:
     """Tabulate `evaluate` on `nodes` points on each input and measure the interpolation error.
 
@@ -81,6 +85,8 @@ def build_table(
         ``evaluate(points)``, points of shape (n, n_inputs), to a dict of arrays of shape (n,).
     nodes : int
         Nodes on each input.
+    progress : callable, optional
+        Called with the share of the error's probes that are evaluated.
 
     Raises
     ------
@@ -99,7 +105,8 @@ def build_table(
     table = InterpolationTable(axes, {name: v.reshape(shape) for name, v in flat.items()}, {})
     worst = dict.fromkeys(flat, 0.0)
     knots = [_knots(variable) for variable in rulebase.inputs]
-    for probes in _probes(axes, knots):
+    nets = list(_probes(axes, knots))
+    for done, probes in enumerate(nets, start=1):
         truth, answer = evaluate(probes), table(probes)
         for name in worst:
             gap = np.abs(answer[name] - truth[name])
@@ -108,6 +115,8 @@ def build_table(
             # Rounding of two different sums of products, even where the table is exact.
             rounding = 1e-14 * np.abs(truth[name])
             worst[name] = max(worst[name], _largest(gap), _largest(rounding))
+        if progress is not None:
+            progress(done / len(nets))
     return InterpolationTable(axes, table.values, {name: 2 * w for name, w in worst.items()})
 
 

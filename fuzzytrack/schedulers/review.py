@@ -16,9 +16,11 @@ from fuzzytrack.fuzzy.coverage import Hole, find_hole
 from fuzzytrack.fuzzy.loading import as_rulebase
 from fuzzytrack.fuzzy.rulebase import RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.table import build_table
 from fuzzytrack.reprs import summary
 from fuzzytrack.schedulers.fuzzy import FuzzyScheduler
 from fuzzytrack.schedulers.gain_outputs import gains_of
+from fuzzytrack.tasks import Progress
 
 __all__ = ["Review", "explanation", "grid_table", "review"]
 
@@ -154,13 +156,15 @@ def grid_table(
     return inputs | outputs | gains_of(outputs)
 
 
-def review(rules: RuleBase | str | os.PathLike[str]) -> Review:
+def review(rules: RuleBase | str | os.PathLike[str], *, progress: Progress | None = None) -> Review:
     """Review a rule base.
 
     Parameters
     ----------
     rules : RuleBase, str or path
         A rule base, itself or as for `fuzzytrack.load_rulebase`.
+    progress : callable, optional
+        Called with the share that is done of the longest part, the error of a table.
 
     Raises
     ------
@@ -186,7 +190,7 @@ def review(rules: RuleBase | str | os.PathLike[str]) -> Review:
         holes=holes,
         ranges={name: _ends(v) for name, v in {**reached, **gains_of(reached)}.items()},
         symmetry=_symmetry(system, grid, values),
-        table_bounds=_table_bounds(rules),
+        table_bounds=_table_bounds(system, progress),
         schedules=", ".join(f"{key} {value}" for key, value in settings.items()),
     )
 
@@ -248,6 +252,8 @@ def _parity(values: Array, mirrored: Array) -> str:
     return f"not symmetric: an output changes by up to {apart:.2g} with the inputs' signs"
 
 
-def _table_bounds(rules: RuleBase) -> dict[str, float]:
+def _table_bounds(system: FuzzySystem, progress: Progress | None) -> dict[str, float]:
     # With more inputs the error of a table takes long to measure, and tables are little used.
-    return FuzzySystem(rules).table_bounds if len(rules.inputs) <= _TABLE_INPUTS else {}
+    if len(system.rules.inputs) > _TABLE_INPUTS:
+        return {}
+    return build_table(system.rules, system.evaluate, system.table_nodes, progress).bounds

@@ -13,6 +13,7 @@ from fuzzytrack.fuzzy.fuzzification import Fuzzification
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.rulebase import Operators, RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
+from fuzzytrack.fuzzy.table import build_table
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
 
@@ -110,6 +111,16 @@ def test_a_function_that_is_multilinear_has_a_bound_of_rounding():
     system = FuzzySystem(base, "table", table_nodes=7)
     assert 0 < system.table_bounds["out"] < 1e-12
     assert system(x=0.25)["out"] == pytest.approx(4.25, abs=1e-13)
+
+
+def test_progress_goes_to_the_whole():
+    base = asymmetric_base()
+    shares = []
+    table = build_table(base, FuzzySystem(base).evaluate, 23, shares.append)
+    assert table.bounds == FuzzySystem(base, "table", table_nodes=23).table_bounds
+    assert len(shares) > 3
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
 
 
 def test_outside_and_nan_inputs():
