@@ -13,19 +13,19 @@ _NUMERAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)
 def is_number(text: str) -> bool:
     """Whether a text is a decimal number: digits, maybe with a sign, a point and an exponent.
 
-    Python's `float` also takes underscores, digits of other scripts, ``nan`` and ``infinity``,
-    which in a file or a command are mistakes or words.
+    `float` of Python also accepts underscores, digits of other scripts, ``nan`` and ``infinity``.
+    In a file or a command these are mistakes, or words with a meaning of their own.
 
     Parameters
     ----------
     text : str
-        Without blanks around it.
+        Blanks around it do not count.
     """
-    return _NUMERAL.fullmatch(text) is not None
+    return _NUMERAL.fullmatch(text.strip()) is not None
 
 
 def as_number(text: str) -> float | None:
-    """Number that a text is; None if it is none, or larger than floating-point numbers are.
+    """Number that a text stands for; None if it is no number, or too large for a float.
 
     Parameters
     ----------

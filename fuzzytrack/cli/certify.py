@@ -110,7 +110,7 @@ def certify(
 
 def _limits(text: str) -> tuple[float, float]:
     """Two times with a colon between them."""
-    low, high = (as_number(part.strip()) for part in text.partition(":")[::2])
+    low, high = (as_number(part) for part in text.partition(":")[::2])
     if low is None or high is None:
         raise ValueError(f"--steps: expected LOW:HIGH, two times, got {text!r}")
     return low, high

@@ -219,7 +219,7 @@ def gate_width(text: str) -> GateWidth:
 def _numbers(text: str | None, option: str) -> tuple[float, ...] | None:
     if text is None:
         return None
-    found = [as_number(part.strip()) for part in text.split(",")]
+    found = [as_number(part) for part in text.split(",")]
     if None in found:
         raise ValueError(f"{option}: expected numbers with commas between them, got {text!r}")
     return tuple(value for value in found if value is not None)
@@ -243,9 +243,11 @@ def _ranges(text: str) -> list[tuple[str, float, float]]:
     found = []
     for name, limits in options.pairs(text, "--valid").items():
         low, colon, high = limits.partition(":")
-        least = as_number(low.strip()) if low else -math.inf
-        most = as_number(high.strip()) if high else math.inf
+        least = as_number(low) if low else -math.inf
+        most = as_number(high) if high else math.inf
         if not colon or least is None or most is None or not least <= most:
-            raise ValueError(f"--valid: expected COL=LOW:HIGH, got {text!r}")
+            raise ValueError(
+                f"--valid: expected COL=LOW:HIGH, got {text!r}; an end that is left out is no limit"
+            )
         found.append((name, least, most))
     return found

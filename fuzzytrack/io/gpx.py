@@ -183,7 +183,7 @@ class _Points:
 
 def _number(text: str) -> float:
     """Number of a text; NaN if it is none."""
-    value = as_number(text.strip())
+    value = as_number(text)
     return math.nan if value is None else value
 
 

@@ -81,7 +81,7 @@ class TextForm:
     @cached_property
     def missing_numbers(self) -> tuple[float, ...]:
         """Numbers that stand for a missing one."""
-        found = (as_number(token.strip()) for token in self.na)
+        found = map(as_number, self.na)
         return tuple(value for value in found if value is not None)
 
 

@@ -222,7 +222,7 @@ def _offset(zone: str | None) -> int:
 
 
 def _is_number(text: str) -> bool:
-    return as_number(text.strip()) is not None
+    return as_number(text) is not None
 
 
 # -------------------------------------------------------------------- many cells

@@ -96,6 +96,7 @@ def test_format_and_order():
         (["--valid", "x=1"], "--valid: expected COL=LOW:HIGH, got 'x=1'"),
         (["--valid", "x=2:1"], "--valid: expected COL=LOW:HIGH, got 'x=2:1'"),
         (["--valid", "x=a:1"], "--valid: expected COL=LOW:HIGH, got 'x=a:1'"),
+        (["--valid", "x=1:inf"], "got 'x=1:inf'; an end that is left out is no limit"),
         (["--time-unit", "hours"], "--time-unit: 'hours'; expected one of s, ms, us, ns"),
         (["--azimuth-from", "west"], "--azimuth-from: 'west'; expected one of north, east"),
         (["--polar", "r,az", "--angle", "b"], "--polar and --angle: a plot has one position"),
