@@ -15,6 +15,7 @@ from fuzzytrack.io.reading import Reading
 
 __all__ = ["OF_TRACKS", "check_plots", "check_sectors", "checked", "without_identities"]
 
+#: Options about plots of one track.
 OF_TRACKS = ("duplicates", "stale", "least_step", "max_gap", "max_coast")
 
 # Turns of an antenna (s), and times from scan to scan.

@@ -8,9 +8,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from fuzzytrack import specs
+from fuzzytrack.recordings.scan_options import OF_TRACKS
 from fuzzytrack.studio.tracker_texts import EDITOR, SAVED
 
 __all__ = ["PageTexts", "RunSnippet", "ScanSnippet", "Snippet", "TrackSnippet", "TuneSnippet"]
@@ -239,11 +241,16 @@ class ScanSnippet(Snippet):
 
     def command(self) -> Command:
         """See `Snippet.command`."""
-        return "scan", [self.name], {**self._read, "output": f"tracks-of-{self.name}"}
+        return (
+            "scan",
+            [self.name],
+            {**self._read, "output": f"tracks-of-{Path(self.name).stem}.csv"},
+        )
 
     @property
     def _read(self) -> dict[str, Any]:
-        return {name: value for name, value in self.options.items() if name not in ("id", "truth")}
+        unused = ("id", "truth", *OF_TRACKS)
+        return {name: value for name, value in self.options.items() if name not in unused}
 
 
 @dataclass(frozen=True)

@@ -62,9 +62,11 @@ def test_commands_name_what_is_saved(page, server, monkeypatch):
         "fuzzytrack compare a.csv --trackers chan-style --polar r,az --site 52.5,5.0 "
         "--sigma-range 30.0 --duplicates first --sort"
     )
-    scan = {"name": "a.csv", "polar": ["r", "az"], "id": "ship", "wrap": 60, "truth": ["x", "y"]}
+    scan = {"name": "a.tsv", "polar": ["r", "az"], "id": "ship", "wrap": 60, "truth": ["x", "y"]}
+    # There are no tracks yet that a gap could end.
+    scan |= {"max_gap": 30}
     text = page.ask("snippet", what="command", of="scan", **scan)["text"]
-    assert text == ("fuzzytrack scan a.csv --wrap 60.0 --polar r,az --output tracks-of-a.csv")
+    assert text == ("fuzzytrack scan a.tsv --wrap 60.0 --polar r,az --output tracks-of-a.csv")
     tune = {"free": "outputs, sets", "trials": 7, "sigma": 2.5}
     text = page.ask("snippet", what="command", of="tune", **tune)["text"]
     assert text == (
