@@ -111,7 +111,7 @@ class PluginWarning(UserWarning):
 
 
 class PrecisionWarning(UserWarning):
-    """Numbers of 32 bits are too few for a filter: its errors are large beside noise of plots."""
+    """A filter in single precision errs by much, compared with the noise of its plots."""
 
 
 class TrackWarning(UserWarning):

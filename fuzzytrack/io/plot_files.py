@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,9 +26,6 @@ from fuzzytrack.io.source import Source
 from fuzzytrack.io.table import Kind, Table, no_rows
 from fuzzytrack.reprs import summary
 from fuzzytrack.tasks import Progress
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["ROWS", "Input", "PlotFiles", "Survey", "opened"]
 

@@ -82,7 +82,7 @@ class Trials:
         forms, n_axes, found = _forms(candidates.title), self.data.n_axes, []
         for tracker in made:
             with contextlib.ExitStack() as stack:
-                if self.compiled and forms.run_compiled(
+                if self.compiled and forms.runs_compiled(
                     tracker, n_axes, self.data.coordinates, made
                 ):
                     stack.enter_context(sharing_code(tracker, n_axes, forms.code))
@@ -132,14 +132,14 @@ class _Forms:
     _last: dict[str | None, Tracker] = field(default_factory=dict)
     _compiled: set[str | None] = field(default_factory=set)
 
-    def run_compiled(
+    def runs_compiled(
         self,
         tracker: Tracker | None,
         n_axes: int,
         coordinates: int,
         others: Sequence[Tracker | None],
     ) -> bool:
-        """Whether a tracker is to run so many coordinates through `code`.
+        """Whether a tracker runs so many coordinates through `code`; they are counted.
 
         Parameters
         ----------

@@ -10,6 +10,7 @@ from fuzzytrack.interop.c99.conversions import ConversionWriter, describe, insid
 from fuzzytrack.interop.c99.values import (
     ATOM,
     CHOICE,
+    LARGEST_INT64,
     NUMBER,
     TRUTH,
     UNARY,
@@ -25,8 +26,6 @@ from fuzzytrack.interop.c99.values import (
 )
 
 __all__ = ["ChoiceWriter"]
-
-_INT64 = 2.0**62
 
 
 class ChoiceWriter(ConversionWriter):
@@ -83,7 +82,9 @@ class ChoiceWriter(ConversionWriter):
 
     def within_limits(self, name: str, value: Scalar) -> Scalar:
         """An integer variable with the limits of all values that it gets."""
-        return Scalar(name, WHOLE, ATOM, min(value.low, -_INT64), max(value.high, _INT64))
+        return Scalar(
+            name, WHOLE, ATOM, min(value.low, -LARGEST_INT64), max(value.high, LARGEST_INT64)
+        )
 
     def _result(self, form: Form) -> tuple[Value, str]:
         """A variable that is assigned to later, and its name."""

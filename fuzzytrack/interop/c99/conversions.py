@@ -17,6 +17,8 @@ from fuzzytrack.interop.c99.values import (
     BITWISE,
     CHOICE,
     EQUAL,
+    LARGEST_INT32,
+    LARGEST_INT64,
     NUMBER,
     POSTFIX,
     TRUTH,
@@ -44,8 +46,6 @@ __all__ = [
     "whole_constant",
     "wording",
 ]
-
-_INT32, _INT64 = 2.0**31 - 1, 2.0**62
 
 
 class ConversionWriter:
@@ -96,7 +96,9 @@ class ConversionWriter:
             return self.program.number
         if value.kind == TRUTH:
             return "bool"
-        return "int32_t" if value.low >= -_INT32 and value.high <= _INT32 else "int64_t"
+        return (
+            "int32_t" if value.low >= -LARGEST_INT32 and value.high <= LARGEST_INT32 else "int64_t"
+        )
 
     def within(self, block: Block, write: Callable[[], Value]) -> Value:
         """Value of what is written into another block."""
@@ -136,7 +138,7 @@ class ConversionWriter:
             return Scalar("true" if value.value else "false", TRUTH)
         if kind == WHOLE:
             whole = int(value.value)
-            if abs(whole) > _INT64:
+            if abs(whole) > LARGEST_INT64:
                 self.refuse(node, f"uses the integer {whole}; at most 62 bits can be written in C")
             return whole_constant(whole)
         number = float(value.value)
@@ -249,7 +251,7 @@ def operand(value: Scalar, rank: int, *, last: bool = False) -> str:
 
 def whole_constant(value: int) -> Scalar:
     """An integer in C."""
-    large = abs(value) > _INT32
+    large = abs(value) > LARGEST_INT32
     text = f"INT64_C({abs(value)})" if large else str(abs(value))
     rank = UNARY if value < 0 else ATOM
     return Scalar(f"-{text}" if value < 0 else text, WHOLE, rank, float(value), float(value))

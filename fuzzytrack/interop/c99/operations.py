@@ -15,6 +15,8 @@ from fuzzytrack.interop.c99.values import (
     BITWISE,
     COMPARED,
     EQUAL,
+    LARGEST_INT32,
+    LARGEST_INT64,
     LOGICAL,
     NUMBER,
     POSTFIX,
@@ -55,7 +57,6 @@ _TRUTHS: dict[type, tuple[str, Callable[[Any, Any], Any]]] = {
     ast.BitOr: ("|", operator.or_),
     ast.BitXor: ("^", operator.xor),
 }
-_INT32, _INT64 = 2.0**31 - 1, 2.0**62
 #: Powers up to this one are products.
 _LARGEST_POWER = 8
 
@@ -158,7 +159,7 @@ class OperationWriter(ChoiceWriter):
             found = self.helper(name, WHOLE, a, b)
             if sign == "%":
                 ends = (0.0, b.low - 1) if b.low > 0 else (b.low + 1, 0.0)
-                if abs(b.low) <= _INT32:
+                if abs(b.low) <= LARGEST_INT32:
                     return Scalar(f"(int32_t){found.text}", WHOLE, UNARY, *ends)
             return found
         # What adds 0 or multiplies by 1 is left out: places in memory are written so.
@@ -173,10 +174,10 @@ class OperationWriter(ChoiceWriter):
         corners = [_corner(sign, x, y) for x in (a.low, a.high) for y in (b.low, b.high)]
         low, high = min(corners), max(corners)
         rank = PRODUCT if sign == "*" else SUM
-        if max(-low, high) <= _INT32:
+        if max(-low, high) <= LARGEST_INT32:
             text = f"{operand(a, rank)} {sign} {operand(b, rank, last=True)}"
             return Scalar(text, WHOLE, rank, low, high)
-        if max(-low, high) <= _INT64:
+        if max(-low, high) <= LARGEST_INT64:
             text = f"(int64_t){inside(a, UNARY)} {sign} {operand(b, rank, last=True)}"
             return Scalar(text, WHOLE, rank, low, high)
         if sign == "-":

@@ -10,6 +10,7 @@ import numpy as np
 from fuzzytrack.interop.c99.conversions import whole_constant
 from fuzzytrack.interop.c99.operations import OperationWriter
 from fuzzytrack.interop.c99.values import (
+    LARGEST_INT32,
     NUMBER,
     POSTFIX,
     WHOLE,
@@ -23,8 +24,6 @@ from fuzzytrack.interop.c99.values import (
 )
 
 __all__ = ["PlaceWriter"]
-
-_INT32 = 2.0**31 - 1
 
 
 class PlaceWriter(OperationWriter):
@@ -52,7 +51,11 @@ class PlaceWriter(OperationWriter):
         place = self.place(node, index, len(items))
         numbers = [item.value for item in items if isinstance(item, Known)]
         kinds = {*map(scalar_kind, numbers)}
-        if isinstance(owner, Known) and kinds == {WHOLE} and max(map(abs, numbers)) <= _INT32:
+        if (
+            isinstance(owner, Known)
+            and kinds == {WHOLE}
+            and max(map(abs, numbers)) <= LARGEST_INT32
+        ):
             table = self.program.table(self.definition, node, owner.name or "table", numbers)
             limits = float(min(numbers)), float(max(numbers))
             return Scalar(f"{table}[{place}]", WHOLE, POSTFIX, *limits)

@@ -15,14 +15,18 @@ from typing import Any
 import numpy as np
 
 __all__ = [
-    "ATOM", "BITWISE", "CHOICE", "COMPARED", "EQUAL", "LOGICAL", "NUMBER", "POSTFIX", "PRODUCT",
-    "SUM", "TRUTH", "UNARY", "WHOLE", "Fixed", "Form", "Known", "Room", "Row", "Scalar", "Space",
-    "Value", "Whole", "constant_tuple", "form_of", "joined", "leaves", "scalar_kind",
+    "ATOM", "BITWISE", "CHOICE", "COMPARED", "EQUAL", "LARGEST_INT32", "LARGEST_INT64", "LOGICAL",
+    "NUMBER", "POSTFIX", "PRODUCT", "SUM", "TRUTH", "UNARY", "WHOLE", "Fixed", "Form", "Known",
+    "Room", "Row", "Scalar", "Space", "Value", "Whole", "constant_tuple", "form_of", "joined",
+    "leaves", "scalar_kind",
 ]  # fmt: skip
 
 #: Kinds of scalars: a floating-point number, an integer, a truth value.
 NUMBER, WHOLE, TRUTH = "number", "whole", "truth"
 _ORDER = (TRUTH, WHOLE, NUMBER)
+#: Largest magnitudes of integers that are written as ``int32_t``, and as ``int64_t``, where a bit
+#: is left to spare.
+LARGEST_INT32, LARGEST_INT64 = 2.0**31 - 1, 2.0**62
 
 #: Ranks of C operators: an operand of a higher rank stands in parentheses.
 ATOM, POSTFIX, UNARY, PRODUCT, SUM, COMPARED, EQUAL, BITWISE, LOGICAL, CHOICE = range(10)
