@@ -74,7 +74,7 @@ export function mount(element, app) {
       verdict.textContent = "";
       say(error.message, "error");
     }
-    enable(certify, true);
+    enable(certify, Boolean(store.now.state?.rulebase?.gains));
   }
 
   function draw() {
