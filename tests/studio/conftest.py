@@ -270,3 +270,14 @@ def browser_page(server):
         yield page
         browser.close()
     assert not mistakes
+
+
+@pytest.fixture
+def studio(browser_page):
+    """The page of a new session."""
+    from playwright.sync_api import expect
+
+    browser_page.evaluate("sessionStorage.clear()")
+    browser_page.reload()
+    expect(browser_page.locator("#status")).to_contain_text("connected")
+    return browser_page

@@ -11,14 +11,10 @@ expect = playwright.expect
 
 
 @pytest.fixture
-def design(browser_page):
+def design(studio):
     """The page of a new session, its first surface drawn."""
-    page = browser_page
-    page.evaluate("sessionStorage.clear()")
-    page.reload()
-    expect(page.locator("#status")).to_contain_text("connected")
-    expect(surface(page)).to_have_attribute("aria-label", re.compile("^stiffness over E and dE"))
-    return page
+    expect(surface(studio)).to_have_attribute("aria-label", re.compile("^stiffness over E and dE"))
+    return studio
 
 
 def cell(page, column, row):

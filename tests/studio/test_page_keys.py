@@ -24,15 +24,11 @@ FOCUSED = """() => {
 
 
 @pytest.fixture
-def studio(browser_page):
-    """The page of a new session."""
-    page = browser_page
-    page.evaluate("sessionStorage.clear()")
-    page.reload()
-    expect(page.locator("#status")).to_contain_text("connected")
-    surface = page.locator("#pane-surface canvas")
+def studio(studio):
+    """The page of a new session, its first surface drawn."""
+    surface = studio.locator("#pane-surface canvas")
     expect(surface).to_have_attribute("aria-label", re.compile("^stiffness over E and dE"))
-    return page
+    return studio
 
 
 @pytest.fixture(params=[("light", 1280, 800), ("dark", 820, 1100)], ids=["light-1280", "dark-820"])

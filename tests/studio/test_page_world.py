@@ -25,16 +25,6 @@ TRACKERS = [
 ]
 
 
-@pytest.fixture
-def studio(browser_page):
-    """The page of a new session."""
-    page = browser_page
-    page.evaluate("sessionStorage.clear()")
-    page.reload()
-    expect(page.locator("#status")).to_contain_text("connected")
-    return page
-
-
 def view(page, name):
     page.locator("#rail").get_by_role("button", name=name).click()
 
