@@ -60,9 +60,10 @@ class LiveTracks:
     lateness : float
         A plot that is older than the newest one of its track by at most so much (s) is put in its
         place, and the answers after it are given again where they change. Older ones, and with 0
-        all that are out of order, are counted and not used. Where two of these follow each other
-        in time after all but the newest plot of their track, and that is more than a minute, and
-        the lateness, ahead of them, its time is wrong: the track begins anew with the second.
+        all that are out of order, are counted and not used. If two of these follow each other in
+        time, are later than all plots of their track but the newest, and are before that one by
+        more than the lateness and a minute, its time is taken as wrong: the track begins anew with
+        the second of them.
     forget : float, optional
         A track without a row for longer than this (s) is forgotten: nothing of it is kept, and a
         later plot of its identity begins a new track, in segment 0. It is looked for every 4096
