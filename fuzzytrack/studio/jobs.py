@@ -1,4 +1,4 @@
-"""Long work, one job at a time: in processes, with progress, what is left, and an end at once."""
+"""Long work, one job after the other: in processes, with progress and what is left."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ __all__ = ["CancelledJobError", "Job", "Jobs", "Owner", "Work"]
 
 # Shortest time between two reports of one job, s.
 _PAUSE = 0.1
+# Seconds after which a job that waits looks again whether the one before it is stuck.
+_LOOK = 1.0
 # Processes; a computer with more cores keeps some for the page and everything else.
 _MOST_PROCESSES = 8
 
@@ -39,7 +41,7 @@ class Owner(Protocol):
 
 
 class Job:
-    """One job: what it is, how far it is, and how it ended.
+    """One job: what it is, how far it is, and how it ended; it waits until it is told to begin.
 
     Parameters
     ----------
@@ -57,7 +59,7 @@ class Job:
         self.kind = kind
         self.of = of
         self.owner = owner
-        self.state = "running"
+        self.state = "waiting"
         self.error: str | None = None
         self.results: dict[str, Any] | None = None
         self.notes: list[str] = []
@@ -70,18 +72,31 @@ class Job:
 
     @property
     def running(self) -> bool:
-        """Whether it has not ended."""
+        """Whether it has begun, and has not ended."""
         return self.state == "running"
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended, in any way."""
+        return self.state not in ("waiting", "running")
 
     @property
     def silent(self) -> float:
         """Seconds since it last made progress."""
         return time.monotonic() - self._heard
 
-    def begin(self) -> None:
-        """Tell that it runs, before there is progress, which may take a while."""
+    def wait(self) -> None:
+        """Tell that it waits for its turn."""
         with self._lock:
-            if self.running:
+            if not self.ended:
+                self.owner.report(self, False)
+
+    def begin(self) -> None:
+        """Let it run, and tell so before there is progress, which may take a while."""
+        with self._lock:
+            if not self.ended:
+                self.state = "running"
+                self._begun = self._heard = time.monotonic()
                 self.owner.report(self, False)
 
     def progress(self, share: float) -> None:
@@ -111,7 +126,7 @@ class Job:
     def end(self, state: str, error: str | None = None) -> bool:
         """End the job, unless it has ended already; whether it has ended by this."""
         with self._lock:
-            if not self.running:
+            if self.ended:
                 return False
             self.state, self.error, self._ended = state, error, time.monotonic()
             self.owner.report(self, False)
@@ -148,7 +163,7 @@ Work = Callable[[Job, ProcessPoolExecutor], dict[str, Any]]
 
 
 class Jobs:
-    """The jobs of a server, of which one runs at a time.
+    """The jobs of a server, of which one runs at a time; the others wait in the order they came.
 
     Processes stay for the next job, since a new one takes a second to begin. A job that is canceled
     or stuck takes its processes with it.
@@ -163,94 +178,108 @@ class Jobs:
         self._named = named
         self._numbers = count(1)
         self._pool: ProcessPoolExecutor | None = None
-        self._current: Job | None = None
+        # The first one runs, the others wait; some may have ended.
+        self._line: list[Job] = []
         # Held until the processes of a job that is ended are given up: the next one has others.
-        self._lock = threading.Lock()
+        self._changed = threading.Condition()
 
     def start(self, kind: str, of: int, work: Work, owner: Owner) -> Job:
-        """Start a job; one whose owner is gone ends for it.
+        """Start a job, which waits for those before it; one whose owner is gone ends for it.
 
         Raises
         ------
         ValueError
-            If another one is running.
+            If one of the same kind and owner has not ended.
         """
-        with self._lock:
-            self._end_if_stuck()
-            current = self._current
-            if current is not None and current.running:
-                if current.owner is owner:
-                    raise ValueError(
-                        f"a job ({current.kind}) is running; wait for its end, or cancel it"
-                    )
-                if not current.owner.gone:
-                    raise ValueError(
-                        f"a job ({current.kind}) of another page is running; wait for its end, or "
-                        "cancel it there"
-                    )
-                self._end(current, "cancelled")
-            job = self._current = Job(next(self._numbers), kind, of, owner)
-            pool = self._pool = self._pool or process_pool(_processes())
+        with self._changed:
+            self._clear()
+            if any(each.kind == kind and each.owner is owner for each in self._line):
+                raise ValueError(
+                    f"a job ({kind}) is running, or waits for its turn; wait for its end, or "
+                    "cancel it"
+                )
+            job = Job(next(self._numbers), kind, of, owner)
+            self._line.append(job)
         # Not one of a pool of threads: a plug-in that hangs would keep the server from ending.
-        threading.Thread(target=self._do, args=(job, work, pool), daemon=True).start()
+        threading.Thread(target=self._do, args=(job, work), daemon=True).start()
         return job
 
-    def cancel(self, number: int, owner: Owner) -> Job:
-        """Cancel a job; one that has ended stays as it is.
-
-        Raises
-        ------
-        ValueError
-            If no such job is known any more, or it is not one of this owner.
-        """
-        with self._lock:
-            job = self._current
-            if job is None or job.number != number:
-                raise ValueError(f"job: no job {number} is running")
-            if job.owner is not owner:
-                raise ValueError(f"job: {number} is a job of another page; cancel it there")
+    def cancel(self, job: Job) -> None:
+        """Cancel a job, unless it has ended."""
+        with self._changed:
             self._end(job, "cancelled")
-        return job
 
     def replace(self, job: Job) -> None:
         """End a job, unless it has ended, for another one that is wanted in its place."""
-        with self._lock:
+        with self._changed:
             self._end(job, "replaced")
 
     def close(self) -> None:
-        """End the job that runs, and the processes."""
-        with self._lock:
-            if self._current is not None:
-                self._current.end("cancelled")
+        """End all jobs, and the processes."""
+        with self._changed:
+            for job in self._line:
+                job.end("cancelled")
             self._drop()
+            self._changed.notify_all()
 
-    def _end_if_stuck(self) -> None:
-        """End the job that runs if it has made no progress for too long."""
-        job = self._current
-        if job is not None and job.running and job.silent > SILENCE:
+    def _clear(self) -> None:
+        """Take out jobs that have ended, and a first one that is stuck or that nobody waits for."""
+        self._line = [job for job in self._line if not job.ended]
+        if not self._line:
+            return
+        first, *others = self._line
+        if first.running and first.silent > SILENCE:
             why = f"no progress for {SILENCE:.0f} s; a tracker, or a plug-in, may hang"
-            self._end(job, "failed", why)
+            self._end(first, "failed", why)
+        elif others and first.owner.gone:
+            self._end(first, "cancelled")
+        if first.ended:
+            self._line = others
 
     def _end(self, job: Job, state: str, why: str | None = None) -> None:
-        """End a job with its processes, unless it has ended already."""
+        """End a job, with its processes if it has begun, unless it has ended already."""
+        had_processes = job.running
         if job.end(state, why):
-            self._drop()
+            if had_processes:
+                self._drop()
+            self._changed.notify_all()
 
     def _drop(self) -> None:
         pool, self._pool = self._pool, None
         if pool is not None:
             end_processes(pool)
 
-    def _do(self, job: Job, work: Work, pool: ProcessPoolExecutor) -> None:
-        """Do the work; runs in a thread of its own."""
-        job.begin()
+    def _turn(self, job: Job) -> None:
+        """Wait for the turn of a job, and begin it, unless it is ended meanwhile."""
+        with self._changed:
+            self._clear()
+            if not job.ended and self._line[0] is not job:
+                job.wait()
+            while not job.ended and self._line[0] is not job:
+                self._changed.wait(_LOOK)
+                self._clear()
+            job.begin()
+
+    def _processes_of(self, job: Job) -> ProcessPoolExecutor:
+        """Processes for a job; one that has ended gets none."""
+        with self._changed:
+            if job.ended:
+                raise CancelledJobError
+            self._pool = self._pool or process_pool(_processes())
+            return self._pool
+
+    def _do(self, job: Job, work: Work) -> None:
+        """Do the work when it is its turn; runs in a thread of its own."""
+        self._turn(job)
+        pool = None
         try:
+            pool = self._processes_of(job)
             with noted() as job.notes:
                 job.finish(work(job, pool))
         except CancelledJobError:
             pass
         except BrokenExecutor:
-            with self._lock:
+            with self._changed:
                 if self._pool is pool:
                     self._drop()
             job.end("failed", "a process ended, perhaps for lack of memory; try fewer runs")
@@ -259,6 +288,8 @@ class Jobs:
         except Exception as failure:
             # What a plug-in raises is no mistake of the server.
             job.end("failed", self._named(in_one_sentence(failure)))
+        with self._changed:
+            self._changed.notify_all()
 
 
 def _processes() -> int:

@@ -153,6 +153,20 @@ class Page:
         self.jobs[kind] = job
         return job
 
+    def cancel(self, number: int) -> Job:
+        """Cancel a job that the page has started; one that has ended stays as it is.
+
+        Raises
+        ------
+        ValueError
+            If it is none of the last ones of this page.
+        """
+        for job in self.jobs.values():
+            if job.number == number:
+                self.studio.jobs.cancel(job)
+                return job
+        raise ValueError(f"job: this page has no job {number}; a page cancels only its own")
+
     def replace(self, kind: str) -> None:
         """End the job of a kind that the page has started, if it runs, for another one."""
         if kind in self.jobs:

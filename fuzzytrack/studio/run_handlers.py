@@ -71,8 +71,7 @@ def trackers_of(page: Page, texts: list[str]) -> MakeTrackers:
 
 def cancel(page: Page, given: Arguments) -> Answer:
     """Cancel a job of the page at once."""
-    job = page.studio.jobs.cancel(given.whole("job", 1, _MOST_SEED), page)
-    return {"job": job.as_json(False)}
+    return {"job": page.cancel(given.whole("job", 1, _MOST_SEED)).as_json(False)}
 
 
 def walk_run(page: Page, given: Arguments) -> Later:

@@ -76,7 +76,7 @@ class Client:
     def job(self, number):
         """Events of a job, to its end."""
         found = [e["job"] for e in self.events if e.get("event") == "job"]
-        while not found or found[-1]["state"] == "running":
+        while not found or found[-1]["state"] in ("waiting", "running"):
             message = self.receive()[1]
             if message.get("event") == "job":
                 found.append(message["job"])

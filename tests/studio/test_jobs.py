@@ -23,7 +23,7 @@ class Reports:
 
     def report(self, job, with_results):
         self.told.append(job.as_json(with_results))
-        if not job.running:
+        if job.ended:
             self.ended.set()
 
     def end(self):
@@ -69,12 +69,9 @@ def test_a_job_that_is_canceled_stays_so(found):
 
     job = found.start("run", 1, work, reports)
     with pytest.raises(ValueError, match=r"a job \(run\) is running"):
-        found.start("tune", 1, work, reports)
-    with pytest.raises(ValueError, match="no job 99 is running"):
-        found.cancel(99, reports)
-    with pytest.raises(ValueError, match=r"job: 1 is a job of another page; cancel it there"):
-        found.cancel(job.number, Reports())
-    assert found.cancel(job.number, reports).state == "cancelled"
+        found.start("run", 1, work, reports)
+    found.cancel(job)
+    assert job.state == "cancelled"
     go.set()
     assert reports.end()["state"] == "cancelled"
     assert found.start("run", 1, lambda job, pool: {}, Reports()).number == job.number + 1
@@ -85,12 +82,57 @@ def test_a_job_goes_on_until_it_is_ended_by_its_page_or_for_that_of_another_one_
 ):
     one, other, go = Reports(), Reports(), threading.Event()
     found.start("tune", 1, lambda job, pool: {"heard": go.wait(PATIENCE)}, one)
-    with pytest.raises(ValueError, match=r"a job \(tune\) of another page is running; .* there"):
-        found.start("run", 1, lambda job, pool: {}, other)
-    one.gone = True
     found.start("run", 1, lambda job, pool: {"x": 1}, other)
+    one.gone = True
     assert one.end()["state"] == "cancelled"
     assert other.end()["results"] == {"x": 1}
+    go.set()
+
+
+def test_jobs_that_are_started_meanwhile_wait_and_run_in_their_order(found):
+    one, other, go = Reports(), Reports(), threading.Event()
+    begun = []
+
+    def work(job, pool):
+        begun.append(job.number)
+        go.wait(PATIENCE)
+        return {"pool": id(pool)}
+
+    first = found.start("run", 1, work, one)
+    canceled = found.start("track", 1, work, one)
+    replaced = found.start("tune", 1, work, other)
+    last = found.start("run", 1, work, other)
+    found.cancel(canceled)
+    found.replace(replaced)
+    assert [job.ended for job in (first, canceled, replaced, last)] == [False, True, True, False]
+    go.set()
+    # One that is ended before its turn takes no processes away from the one that runs.
+    while "done" not in [each["state"] for each in other.told]:
+        other.ended.clear()
+        other.end()
+    assert begun == [first.number, last.number]
+    assert first.results == last.results != {}
+    states = [each["state"] for each in other.told if each["id"] == last.number]
+    assert states == ["waiting", "running", "done"]
+
+
+def test_a_job_that_waits_for_one_without_progress_begins_after_a_while(found, monkeypatch):
+    monkeypatch.setattr(jobs, "_LOOK", 0.01)
+    stuck, waiting, go = Reports(), Reports(), threading.Event()
+    found.start("run", 1, lambda job, pool: {"heard": go.wait(PATIENCE)}, stuck)
+    found.start("run", 1, lambda job, pool: {"x": 1}, waiting)
+    monkeypatch.setattr(jobs, "SILENCE", 0.0)
+    assert "no progress for 0 s" in stuck.end()["error"]
+    assert waiting.end()["results"] == {"x": 1}
+    go.set()
+
+
+def test_the_end_of_all_ends_those_that_wait(found):
+    one, other, go = Reports(), Reports(), threading.Event()
+    found.start("run", 1, lambda job, pool: {"heard": go.wait(PATIENCE)}, one)
+    found.start("run", 1, lambda job, pool: {}, other)
+    found.close()
+    assert [one.end()["state"], other.end()["state"]] == ["cancelled", "cancelled"]
     go.set()
 
 
@@ -148,15 +190,14 @@ def test_a_job_has_no_processes_of_one_that_is_being_canceled(found):
 
     class Eager(Reports):
         def report(self, job, with_results):
-            if not job.running:
+            if job.ended:
                 other.start()
                 # If it does not wait for the end of the cancellation, it begins within this time.
                 other.join(0.1)
 
     first = Eager()
     other = threading.Thread(target=lambda: found.start("run", 1, work, last))
-    number = found.start("run", 1, work, first).number
-    found.cancel(number, first)
+    found.cancel(found.start("run", 1, work, first))
     go.set()
     other.join(PATIENCE)
     assert last.end()["state"] == "done"

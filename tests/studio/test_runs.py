@@ -75,13 +75,18 @@ def test_a_run_gives_what_the_command_gives_and_can_be_canceled(page, server, wa
         # Edits go on meanwhile.
         assert page.ask("set_cell", row=0, column=0, text="S-L")["state"]
         with server.page() as other:
-            said = "a job (run) of another page is running; wait for its end, or cancel it there"
-            assert other.refused("tune") == said
             assert other.refused("cancel", job=number) == (
-                f"job: {number} is a job of another page; cancel it there"
+                f"job: this page has no job {number}; a page cancels only its own"
             )
-        page.ask("cancel", job=number)
-        assert page.job(number)[-1]["state"] == "cancelled"
+            # What another page starts waits, and begins when this one has ended.
+            waits = other.ask("run", trackers=["editor"], runs=5)["job"]
+            while not other.events:
+                other.events.append(other.receive()[1])
+            assert other.events[0]["job"]["state"] == "waiting"
+            page.ask("cancel", job=number)
+            assert page.job(number)[-1]["state"] == "cancelled"
+            other.ask("cancel", job=waits)
+            assert other.job(waits)[-1]["state"] == "cancelled"
         assert page.ask("cancel", job=number)["job"]["state"] == "cancelled"
     # The next one has new processes.
     assert run_and_wait(page, trackers=["editor"], runs=5)[-1]["state"] == "done"

@@ -5,7 +5,7 @@ import { argumentsOf, inFields } from "./columns.js";
 import { html, select } from "./elements.js";
 import { action, group } from "./fields.js";
 import { figure } from "./figure.js";
-import { jobBar } from "./jobbar.js";
+import { isBusy, jobBar } from "./jobbar.js";
 import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import { even, shown, withPlaces } from "./numbers.js";
@@ -140,7 +140,7 @@ export function mount(element, app) {
   store.follow(["working"], ({ working }) => {
     if (working) words.textContent = "";
   });
-  store.follow(["working", "recording", "described", "job"], (now) => {
+  store.follow(["working", "recording", "described", "jobs"], (now) => {
     work.hidden = !now.working;
     work.firstChild.textContent = `${now.recording} is being read.`;
     hint.textContent = hintOf(now);
@@ -154,8 +154,8 @@ export function mount(element, app) {
   }
 }
 
-function hintOf({ working, recording, described, job }) {
-  if (working || (job?.kind === "track" && job.state === "running")) return "";
+function hintOf({ working, recording, described, jobs }) {
+  if (working || isBusy(jobs.track)) return "";
   if (described?.problem) return `${recording} cannot be read yet: the message below its name says why.`;
   if (recording) return `Track and compare: all trackers that are checked follow the tracks of ${recording}.`;
   return "Drop a CSV file with columns of time and position, or choose one in the folder. All trackers that are checked follow its tracks and are compared.";

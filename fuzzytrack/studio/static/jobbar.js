@@ -3,6 +3,11 @@
 import { inFields } from "./columns.js";
 import { html } from "./elements.js";
 
+/** Take in what is told of a job: `job` is the one that was heard of last, `jobs` has the last of each kind. */
+export function takeJob(store, job) {
+  store.set({ job, jobs: { ...store.now.jobs, [job.kind]: job } });
+}
+
 /**
  * Bar and words for jobs of a kind, and the button that cancels one, which is there in place of
  * `start` while one runs.
@@ -14,7 +19,8 @@ export function jobBar({ store, socket, say }, kind, label, start) {
 
   async function stop() {
     try {
-      store.set({ job: (await socket.send("cancel", { job: store.now.job.id })).job });
+      const { job } = await socket.send("cancel", { job: store.now.jobs[kind].id });
+      takeJob(store, job);
     } catch (error) {
       say(error.message, "error");
     }
@@ -24,11 +30,11 @@ export function jobBar({ store, socket, say }, kind, label, start) {
   store.follow(["job"], ({ job }) => {
     // What became of the last one stays, whatever other jobs there are.
     if (job?.kind !== kind) return;
-    const running = job.state === "running";
-    start.hidden = running;
-    cancel.hidden = !running;
-    bar.hidden = !running;
-    if (running && job.done) bar.value = job.done / job.of;
+    const busy = isBusy(job);
+    start.hidden = busy;
+    cancel.hidden = !busy;
+    bar.hidden = !busy;
+    if (busy && job.done) bar.value = job.done / job.of;
     else bar.removeAttribute("value");
     words.textContent = told(job);
     words.classList.toggle("failed", job.state === "failed");
@@ -43,9 +49,15 @@ const STARTING = {
   tune: "Starting: the data are read, or simulated…",
 };
 
+/** Whether a job has not ended. */
+export function isBusy(job) {
+  return job?.state === "running" || job?.state === "waiting";
+}
+
 /** A job in words. */
 function told({ kind, done, of, seconds, seconds_left: left, state, error }) {
   const count = kind === "run" ? `${done} of ${of} runs` : `${Math.round((100 * done) / of)} %`;
+  if (state === "waiting") return "Waiting: another job runs, of this page or another one…";
   if (state === "running" && !done) return STARTING[kind];
   if (state === "running") return `${count}${left === null ? "" : `, ${duration(left)} left`}`;
   if (state === "replaced") return "";

@@ -5,6 +5,7 @@ import { choice, html } from "./elements.js";
 import { followPoint } from "./explain.js";
 import * as files from "./files.js";
 import { takeBackByEscape } from "./focus.js";
+import { takeJob } from "./jobbar.js";
 import { RECORDED } from "./pick.js";
 import { followScenario } from "./scenario.js";
 import { connect } from "./socket.js";
@@ -16,7 +17,7 @@ const INITIAL = {
   // From the server.
   connected: false, session: null, opened: { rules: null, scenario: null }, hello: null, state: null, files: [], shipped: [], values: null,
   valuesError: null, explanation: null, gains: null, visits: null, runs: 0,
-  scenario: null, job: null, results: null, asked: null, ranWith: null, tracked: null, tuned: null, uploads: [],
+  scenario: null, job: null, jobs: {}, results: null, asked: null, ranWith: null, tracked: null, tuned: null, uploads: [],
   // What is looked at.
   view: "design", tab: "table", line: null, cell: null, variable: null, set: null, shown: null, colorBy: null,
   against: null, axes: null, point: null, camera: { azimuth: -125, elevation: 30, zoom: 1 }, planeRange: "whole",
@@ -83,7 +84,7 @@ function heard(event, news) {
   if (event === "open") greet();
   else if (event === "close") lose();
   else if (event === "notice") say(news.text, "error");
-  else if (event === "job") store.set({ job: news.job });
+  else if (event === "job") takeJob(store, news.job);
 }
 
 function lose() {
@@ -100,7 +101,7 @@ async function greet() {
     const hello = await socket.send("hello", { session: before });
     const { session, state, files: found, shipped } = hello;
     store.set({ hello, session, state, files: found, shipped, connected: true });
-    for (const job of hello.jobs) store.set({ job });
+    for (const job of hello.jobs) takeJob(store, job);
     document.body.classList.add("ready");
     seeVisits();
     if (before && session !== before) await reopen(opened);

@@ -4,6 +4,7 @@ import { makeChart } from "./chart.js";
 import { errorsOf, finite, namesOf, trajectoriesOf } from "./curves.js";
 import { html, select } from "./elements.js";
 import { figure } from "./figure.js";
+import { isBusy } from "./jobbar.js";
 import { keyOf } from "./lines.js";
 import { shown } from "./numbers.js";
 import { makeTrackPicture } from "./trackpicture.js";
@@ -60,7 +61,7 @@ export function mount(element, app) {
   }
 
   async function ask(now) {
-    const { results, pair, job, resultsTab } = now;
+    const { results, pair, jobs, resultsTab } = now;
     const names = results ? namesOf(results) : [];
     const possible = names.length > 1;
     note.hidden = possible || !results;
@@ -78,8 +79,8 @@ export function mount(element, app) {
     });
     draw(now);
     // The difference is known when all runs are done.
-    if (resultsTab !== "pair" || job?.state === "running") return;
-    const wanted = JSON.stringify([pair, results.seed, results.runs, results.scenario, job?.id]);
+    if (resultsTab !== "pair" || isBusy(jobs.run)) return;
+    const wanted = JSON.stringify([pair, results.seed, results.runs, results.scenario, jobs.run?.id]);
     if (wanted === answered) return;
     answered = wanted;
     try {
@@ -97,7 +98,7 @@ export function mount(element, app) {
     for (const map of maps) map.redraw();
   }
 
-  store.follow(["results", "pair", "resultsTab", "job", "scheme", "view"], ask);
+  store.follow(["results", "pair", "resultsTab", "jobs", "scheme", "view"], ask);
   let scenario = null;
   store.follow(["results"], ({ results }) => {
     if (results && scenario !== results.scenario) for (const map of maps) map.fit();

@@ -6,6 +6,7 @@ import { errorsOf, finite, first, linesOf, namesOf, trajectoriesOf } from "./cur
 import { figure } from "./figure.js";
 import { keepText } from "./files.js";
 import { keepFocus } from "./focus.js";
+import { isBusy } from "./jobbar.js";
 import { numberEntries, scriptEntries } from "./keep.js";
 import { menu } from "./menu.js";
 import * as pair from "./pair.js";
@@ -81,16 +82,16 @@ export function mount(element, app) {
       part.hidden = key !== resultsTab || (!results && key !== "walk");
     }
   });
-  store.follow(["results", "ranWith", "state", "scenario"], (now) => {
+  store.follow(["results", "ranWith", "state", "scenario", "jobs"], (now) => {
     about.textContent = now.results ? aboutOf(now) : "";
   });
 }
 
 /** What the results are of, and what has been changed since. */
-function aboutOf({ results, ranWith, state, scenario, job }) {
+function aboutOf({ results, ranWith, state, scenario, jobs }) {
   const name = `${results.scenario}${ranWith?.changed ? " (changed)" : ""}`;
   const about = `${name}, ${results.runs} runs, seed ${results.seed}`;
-  if (!ranWith || !state || !scenario || job?.state === "running") return about;
+  if (!ranWith || !state || !scenario || isBusy(jobs.run)) return about;
   const since = [
     ...(state.text === ranWith.rules ? [] : ["rules"]),
     ...(scenario.text === ranWith.scenario ? [] : ["scenario"]),

@@ -2,7 +2,7 @@
 
 import { html } from "./elements.js";
 import { action, group, numberField } from "./fields.js";
-import { jobBar } from "./jobbar.js";
+import { isBusy, jobBar } from "./jobbar.js";
 import { chosenTrackers, trackerList } from "./pick.js";
 
 export const title = "Run";
@@ -41,8 +41,8 @@ export function mount(element, app) {
   });
 
   async function run() {
-    const { wantedRuns, seed: wanted, job, state, scenario } = store.now;
-    if (job?.kind === "run" && job.state === "running") return;
+    const { wantedRuns, seed: wanted, jobs, state, scenario } = store.now;
+    if (isBusy(jobs.run)) return;
     const texts = chosenTrackers(store.now.trackers);
     if (!texts.length) {
       say("No tracker is chosen: check one in the list, or add one.", "error");
