@@ -252,15 +252,8 @@ def scan(
         raise ValueError("--json: -o - writes the tracks to standard output; name a file")
     if output_columns is not None and output is None:
         raise ValueError("--output-columns: are those of -o; give it")
-    late = options.lags(lag)
-    pictures = _Pictures(plot, animate, show, truth, late)
-    for option, given in (("--show", show), ("--truth", truth)):
-        if given is not None and not pictures.any:
-            raise ValueError(f"{option}: is for --plot and --animate; give one of them")
-    if late is not None and truth is None:
-        raise ValueError("--lag: is that of the plots behind --truth; give it")
-    if show is not None and group is None:
-        raise ValueError("--show: is one of the groups of --group; give it")
+    pictures = _Pictures(plot, animate, show, truth, options.lags(lag))
+    pictures.check_given(grouped=group is not None)
     job = ScanJob.of(
         files if len(files) > 1 else files[0],
         config,
@@ -295,6 +288,16 @@ class _Pictures:
     show: str | None
     truth: str | None
     lag: Lag
+
+    def check_given(self, *, grouped: bool) -> None:
+        """Raise ValueError if something is given without what it is for."""
+        for option, given in (("--show", self.show), ("--truth", self.truth)):
+            if given is not None and not self.any:
+                raise ValueError(f"{option}: is for --plot and --animate; give one of them")
+        if self.lag is not None and self.truth is None:
+            raise ValueError("--lag: is that of the plots behind --truth; give it")
+        if self.show is not None and not grouped:
+            raise ValueError("--show: is one of the groups of --group; give it")
 
     @property
     def any(self) -> bool:
