@@ -161,7 +161,8 @@ class Page:
         ValueError
             If it is none of the last ones of this page.
         """
-        for job in self.jobs.values():
+        # A copy: another thread may start a job meanwhile.
+        for job in list(self.jobs.values()):
             if job.number == number:
                 self.studio.jobs.cancel(job)
                 return job

@@ -4,7 +4,7 @@ import threading
 import warnings
 
 import pytest
-from waiting import PATIENCE
+from waiting import PATIENCE, wait_until
 
 from fuzzytrack.errors import TrackWarning
 from fuzzytrack.studio import jobs
@@ -107,9 +107,7 @@ def test_jobs_that_are_started_meanwhile_wait_and_run_in_their_order(found):
     assert [job.ended for job in (first, canceled, replaced, last)] == [False, True, True, False]
     go.set()
     # One that is ended before its turn takes no processes away from the one that runs.
-    while "done" not in [each["state"] for each in other.told]:
-        other.ended.clear()
-        other.end()
+    wait_until(lambda: "done" in [each["state"] for each in other.told])
     assert begun == [first.number, last.number]
     assert first.results == last.results != {}
     states = [each["state"] for each in other.told if each["id"] == last.number]
