@@ -108,7 +108,7 @@ class FilterExport:
             f"origin, with noise of {_SIGMA:.0f} m and a tenth missed"
         )
         growth = (
-            f"in {'that' if self.errors else 'a'} trial small differences between plots, and so "
+            f"in {'that trial' if self.errors else trial} small differences between plots, and so "
             f"roundings, became up to {_rounded_up(self.growth)} times as large in positions"
         )
         if self.errors is None:
@@ -118,7 +118,6 @@ class FilterExport:
                 "fuzzytrack; the same operations in the same order, so that only exponentials and "
                 "powers differ",
             )
-            growth = growth.replace("a trial", trial)
         else:
             position, velocity = map(_rounded_up, self.errors)
             how = " It calculates in double, and rounds results." if self.widened else ""
