@@ -108,7 +108,7 @@ class FilterExport:
             f"origin, with noise of {_SIGMA:.0f} m and a tenth missed"
         )
         growth = (
-            f"in {'that trial' if self.errors else trial} small differences between plots, and so "
+            f"in {'that trial' if self.errors else trial}, small differences between plots, and so "
             f"roundings, became up to {_rounded_up(self.growth)} times as large in positions"
         )
         if self.errors is None:
