@@ -53,7 +53,7 @@ def track_work(recorded: Recorded, make: MakeTrackers) -> Work:
     def work(job: Job, pool: ProcessPoolExecutor) -> dict[str, Any]:
         with naming(recorded.path):
             used = recorded.read()
-            trackers = make(used.axes_differ)
+            trackers, left_out = _fitting(make(used.axes_differ), used)
             compared = compare_used(
                 trackers, used, executor=pool, progress=part(job.progress, 0.0, _COMPARED)
             )
@@ -66,7 +66,7 @@ def track_work(recorded: Recorded, make: MakeTrackers) -> Work:
         return {
             **summary,
             "name": recorded.path.name,
-            "notes": [*summary["notes"], *by_name(job.notes, trackers)],
+            "notes": [*summary["notes"], *left_out, *by_name(job.notes, trackers)],
             "drawn": [
                 {
                     "id": track.id,
@@ -81,6 +81,18 @@ def track_work(recorded: Recorded, make: MakeTrackers) -> Work:
         }
 
     return work
+
+
+def _fitting(trackers: dict[str, Tracker], used: UsedPlots) -> tuple[dict[str, Tracker], list[str]]:
+    """Trackers without those that need a noise that is not known, and what is said of these.
+
+    Where all need it they stay, and are refused.
+    """
+    found = {name: t for name, t in trackers.items() if not getattr(t, "needs_sigma", False)}
+    if used.has_sigma or not found or len(found) == len(trackers):
+        return trackers, []
+    names = ", ".join(name for name in trackers if name not in found)
+    return found, [f"compared without {names}: the noise of the plots is needed; give `sigma`"]
 
 
 def _drawn(used: UsedPlots) -> list[Track]:

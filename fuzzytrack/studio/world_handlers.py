@@ -137,6 +137,8 @@ def set_sensors(page: Page, given: Arguments) -> Answer:
         words = given.is_text("spacing")
         spacing = given.choice("spacing", _SPACINGS) if words else given.number("spacing")
         entries["spacing"] = spacing
+    if "centre" in given:
+        entries["centre"] = given.numbers("centre")
     entries |= {name: given.number(name) for name in _OF_SENSORS if name in given}
     if not entries:
         raise ValueError("grid: give at least one number of the sensors")
@@ -174,5 +176,5 @@ HANDLERS = {
     "set_waypoints": Handler(set_waypoints, ("points", "speed", "leg", "period", "draft")),
     "set_motion": Handler(set_motion, ("motion", *_OF_MOTION, "start", "steps")),
     "set_sampling": Handler(set_sampling, ("kind", "value", "period")),
-    "set_sensors": Handler(set_sensors, ("grid", "spacing", *_OF_SENSORS)),
+    "set_sensors": Handler(set_sensors, ("grid", "spacing", "centre", *_OF_SENSORS)),
 }

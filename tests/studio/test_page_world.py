@@ -88,6 +88,17 @@ def test_waypoints_are_drawn_dragged_inserted_typed_deleted_and_undone(studio):
     expect(waypoint(studio, 2)).to_have_attribute("aria-label", re.compile("y 1234.5 m"))
 
 
+def test_a_sensor_field_as_it_is_offered_can_be_run(studio):
+    view(studio, "World")
+    # The target of this scenario starts in the middle of the map.
+    studio.get_by_role("button", name="sensor field").click()
+    expect(studio.locator(".facts")).to_contain_text("positions within reach")
+    expect(studio.get_by_role("textbox", name="Range σ")).to_have_value("14.14")
+    view(studio, "Run")
+    run(studio, 20)
+    expect(studio.locator("#pane-run [role=status]")).to_contain_text("20 runs in")
+
+
 def test_sensors_and_their_reach_are_shown_and_changed(studio):
     view(studio, "World")
     studio.get_by_role("button", name="Scenario turn").click()
@@ -161,6 +172,37 @@ def test_a_run_is_canceled_and_another_one_can_begin(studio, waiting_runs):
         studio.get_by_role("button", name="Cancel").first.click()
         expect(status).to_contain_text("Canceled after")
     expect(studio.locator("#pane-run").get_by_role("button", name="Run")).to_be_visible()
+
+
+def test_runs_wait_for_those_of_another_page(studio, server, waiting_runs):
+    view(studio, "Run")
+    status = studio.locator("#pane-run [role=status]")
+    with server.page() as other:
+        with waiting_runs():
+            number = other.ask("run", trackers=["editor"], runs=100_000)["job"]
+            run(studio, 20)
+            expect(status).to_contain_text("Waiting: another job runs")
+            other.ask("cancel", job=number)
+            expect(status).to_contain_text("of 20 runs")
+        expect(status).to_contain_text("20 runs in")
+
+
+def test_a_run_that_the_server_has_lost_can_be_started_again(studio, server, waiting_runs):
+    view(studio, "Run")
+    status = studio.locator("#pane-run [role=status]")
+    with waiting_runs():
+        run(studio, 100_000)
+        expect(status).to_contain_text("left")
+        # As a server that was started again: it knows no jobs, and the connection was lost.
+        found = server.studio()
+        for page in found._pages.values():
+            page.jobs.clear()
+        for connection in list(server.server.server_state.connections):
+            connection.loop.call_soon_threadsafe(connection.transport.close)
+        expect(status).to_contain_text("the server was started again")
+        found.jobs.close()
+    run(studio, 20)
+    expect(status).to_contain_text("20 runs in")
 
 
 def test_the_file_of_a_radar_is_tracked_as_the_page_proposes(studio, server, monkeypatch):

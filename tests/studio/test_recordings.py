@@ -203,6 +203,20 @@ def test_warnings_about_tracks_are_notes_with_the_names_of_trackers(page, server
     assert said.startswith("editor, fixed:alpha=0.5377:beta=0.2018, stiffness-damping: its gains")
 
 
+def test_a_tracker_that_needs_an_unknown_noise_is_left_out_and_the_others_are_compared(page):
+    text = "time,x,y\n" + "".join(f"{k},{3 * k},5\n" for k in range(30))
+    page.ask("upload", name="still.csv", text=text)
+    found = tracked(page, name="still.csv", trackers=["maneuver", *TRACKERS])["results"]
+    assert [row["name"] for row in found["comparison"]["rows"]] == TRACKERS
+    assert list(found["drawn"][0]["trackers"]) == TRACKERS
+    said = "compared without maneuver: the noise of the plots is needed; give `sigma`"
+    assert said in found["notes"]
+    last = tracked(page, name="still.csv", trackers=["maneuver"])
+    assert last["error"] == "sigma: maneuver needs the standard deviation of the plots (m)"
+    last = tracked(page, name="still.csv", trackers=["maneuver", *TRACKERS], sigma=1)
+    assert len(last["results"]["comparison"]["rows"]) == 3
+
+
 def test_the_truth_is_in_columns_or_a_file_of_the_folder(page, server, csv, tmp_path):
     (server.folder / "true.csv").write_text(csv)
     outside = tmp_path / "outside"

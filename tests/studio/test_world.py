@@ -1,5 +1,6 @@
 """The scenario of a page."""
 
+import numpy as np
 import pytest
 
 from fuzzytrack.simulation.scenario_files import loads_scenario
@@ -61,6 +62,8 @@ def test_sensors_become_a_field_and_noise_again(page):
     found = page.ask("set_sensors", spacing=2500.5)["state"]
     assert found["sensors"]["spacing"] == 2500.5
     assert found["sensors"]["grid"] == 5
+    found = page.ask("set_sensors", centre=[250, -100])["state"]
+    assert np.mean(found["scenario"]["sensors"]["positions"], axis=0) == pytest.approx([250, -100])
     found = page.ask("set_sensors", sigma=80, detection=0.9)["state"]
     assert found["sensors"] == {"sigma": 80, "detection": 0.9}
     # What would be no scenario changes nothing.

@@ -103,7 +103,8 @@ export function mount(element, app) {
         for (const one of list.children) one.hidden = !one.textContent.includes(filter.value);
       },
       onkeydown: (event) => {
-        const first = [...list.children].find((one) => !one.hidden);
+        const left = [...list.children].filter((one) => !one.hidden);
+        const first = left.find((one) => one.firstChild.textContent === filter.value) ?? left[0];
         if (!first || !["Enter", "ArrowDown"].includes(event.key)) return;
         event.preventDefault();
         if (event.key === "Enter") first.click();

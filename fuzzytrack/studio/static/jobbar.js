@@ -49,6 +49,14 @@ const STARTING = {
   tune: "Starting: the data are read, or simulated…",
 };
 
+/** End jobs that the server does not know, since it was started again meanwhile; it knows `jobs`. */
+export function endLost(store, jobs) {
+  for (const job of Object.values(store.now.jobs)) {
+    if (isBusy(job) && !jobs.some(({ id, kind }) => id === job.id && kind === job.kind))
+      takeJob(store, { ...job, state: "failed", error: "the server was started again; start this again as well" });
+  }
+}
+
 /** Whether a job has not ended. */
 export function isBusy(job) {
   return job?.state === "running" || job?.state === "waiting";

@@ -5,7 +5,7 @@ import { choice, html } from "./elements.js";
 import { followPoint } from "./explain.js";
 import * as files from "./files.js";
 import { takeBackByEscape } from "./focus.js";
-import { takeJob } from "./jobbar.js";
+import { endLost, takeJob } from "./jobbar.js";
 import { RECORDED } from "./pick.js";
 import { followScenario } from "./scenario.js";
 import { connect } from "./socket.js";
@@ -102,6 +102,7 @@ async function greet() {
     const { session, state, files: found, shipped } = hello;
     store.set({ hello, session, state, files: found, shipped, connected: true });
     for (const job of hello.jobs) takeJob(store, job);
+    endLost(store, hello.jobs);
     document.body.classList.add("ready");
     seeVisits();
     if (before && session !== before) await reopen(opened);

@@ -262,9 +262,12 @@ export function boundsOf(points) {
   return found;
 }
 
-/** A distance in words: m, or km where that is shorter. */
-export function distance(meters) {
-  return Math.abs(meters) >= 1e4 ? `${shown(meters / 1000, 4)} km` : `${shown(meters, 4)} m`;
+// From here on distances are in km, which is shorter.
+const FAR = 1e4;
+
+/** A distance in words, in m or km; `largest` is that of those beside it, in the same unit. */
+export function distance(meters, largest = Math.abs(meters)) {
+  return largest >= FAR ? `${shown(meters / 1000, 4)} km` : `${shown(meters, 4)} m`;
 }
 
 function apart(one, other) {
@@ -276,7 +279,8 @@ function grid(place, center, width, height) {
   const half = { x: (width / 2) * place.scale, y: (height / 2) * place.scale };
   const count = width / 110;
   const step = spacing(ticks(0, 2 * half.x, count));
-  const label = (value) => distance(value);
+  const largest = Math.max(Math.abs(center[0]) + half.x, Math.abs(center[1]) + half.y);
+  const label = (value) => distance(value, largest);
   for (const value of multiples(center[0] - half.x, center[0] + half.x, step)) {
     const at = place.x(value);
     parts.push(svg("line", { class: "grid", x1: at, x2: at, y1: 0, y2: height }));

@@ -58,6 +58,7 @@ export function mount(element, app) {
       slot.td.addEventListener("paste", (event) => paste(event, slot));
     }
     grid.classList.toggle("list", rules.form === "list");
+    grid.style.setProperty("--columns", rules.column_sets?.length ?? 0);
     grid.replaceChildren(...(rules.form === "table" ? tableRows(rulebase, slots) : listRows(rulebase, slots)));
   }
 

@@ -9,13 +9,15 @@ const SPACINGS = [
   ["sparse", "sparse, 10 km"],
 ];
 // The field of Llinas et al. (1998), section 5.2 (variances of 200 m² and 3π/180 rad²), and the plain
-// noise of the shipped scenarios.
+// noise of the shipped scenarios. The field is moved aside: a target that starts at 0, 0, or goes
+// through round numbers, is never exactly at a sensor, where its plot would have no variance.
 const FIELD = {
   grid: 7,
   spacing: "dense",
   reach: 1000,
-  range_sigma: Math.sqrt(200),
-  bearing_sigma: (Math.sqrt((3 * Math.PI) / 180) * 180) / Math.PI,
+  range_sigma: 14.14,
+  bearing_sigma: 13.11,
+  centre: [250, 250],
 };
 const FREE = { sigma: 115 };
 // As many circles are drawn one by one; of more only the places.

@@ -58,20 +58,21 @@ export function curve(at, one, stroke, chosen) {
   return svg("g", {}, svg("polygon", { class: "inside", points: foot, fill: stroke }), line);
 }
 
-/** Names over the peaks, in two rows where they would touch. */
+/** Names over the peaks, in two rows where they would touch; one that fits in neither is left out. */
 export function labels(at, sets, chosen, paint) {
-  const ends = [-Infinity, -Infinity];
+  const taken = [[], []];
   const places = sets.map((one) => {
     const [, b, c] = shapeOf(one).quad(one.parameters);
     return { name: one.name, x: (at.x(clamp(b, at)) + at.x(clamp(c, at))) / 2 };
   });
   return places
     .filter(({ x }) => Number.isFinite(x))
-    .sort((a, b) => a.x - b.x)
-    .map(({ name, x }) => {
+    .sort((a, b) => (b.name === chosen) - (a.name === chosen) || a.x - b.x)
+    .flatMap(({ name, x }) => {
       const half = 4 * name.length + 3;
-      const row = x - half > ends[0] ? 0 : 1;
-      ends[row] = x + half;
+      const row = taken.findIndex((others) => others.every((one) => Math.abs(one.x - x) > one.half + half));
+      if (row < 0) return [];
+      taken[row].push({ x, half });
       const middle = Math.max(half, Math.min(at.width - half, x));
       return svg(
         "text",
