@@ -220,12 +220,13 @@ def quarter_circle(parameters: Parameters, x: str) -> str:
 def ellipse_values(parameters: Parameters, x: Array) -> Array:
     """Evaluate the upper half of an ellipse between its ends."""
     start, end = parameters
-    part = np.clip(np.abs(2.0 * x - (start + end)) / (end - start), 0.0, 1.0)
+    # From the nearer end, so that it is 0 there: a root makes much of a rounding.
+    part = np.clip(1.0 - 2.0 * np.minimum(x - start, end - x) / (end - start), 0.0, 1.0)
     return np.asarray(np.sqrt(1.0 - part**2))
 
 
 def ellipse(parameters: Parameters, x: str) -> str:
     """Write the half of an ellipse."""
     start, end = parameters
-    part = f"abs(2.0 * {x} - {start + end!r}) / {end - start!r}"
-    return f"(1.0 - min(1.0, {part}) ** 2) ** 0.5"
+    part = f"1.0 - 2.0 * min({x} - {start!r}, {end!r} - {x}) / {end - start!r}"
+    return f"(1.0 - max(0.0, min(1.0, {part})) ** 2) ** 0.5"

@@ -37,6 +37,7 @@ class Operators:
         How the confidence of a conclusion changes the strength of its rule, likewise.
     alternatives : str
         The OR between alternative conditions inside of one rule, of the words of `disjunction`.
+        ``sum`` goes with products, and sum or max, only, since a strength may then exceed 1.
 
     Raises
     ------
@@ -92,6 +93,15 @@ class Operators:
     def weighing(self) -> str:
         """The weighting, in words of `conjunction`."""
         return self.weighting or self.conjunction
+
+    @property
+    def takes_sums(self) -> bool:
+        """Whether a strength above 1, as the plain sum of alternatives has, is as good as any.
+
+        Other norms are for grades: beyond 1 some divide by 0, become negative, or cut it to 1.
+        """
+        products = self.implying == self.weighing == "product"
+        return products and self.disjunction in ("sum", "max")
 
     @property
     def is_classical(self) -> bool:

@@ -191,6 +191,7 @@ class RuleBase:
         for output in self.outputs:
             if not any(c.output == output.name for rule in self.rules for c in rule.consequents):
                 raise RuleBaseError(f"no rule concludes about output {output.name!r}")
+        self._check_alternatives()
 
     def __repr__(self) -> str:
         if self._origin is not None:
@@ -264,6 +265,18 @@ class RuleBase:
                 self.input(name).index(term)
         for consequent in rule.consequents:
             self.output(consequent.output).index(consequent.set_name)
+
+    def _check_alternatives(self) -> None:
+        """Refuse strengths above 1 for an output whose norms are for grades alone."""
+        if self.operators.alternatives != "sum" or not any(r.alternatives for r in self.rules):
+            return
+        for output in self.outputs:
+            if not self.operators_of(output).takes_sums:
+                raise RuleBaseError(
+                    "operators: alternatives 'sum', by which strengths exceed 1, need product for "
+                    f"implication and weighting, and sum or max for or, but {output.name} has "
+                    "others; use alternatives 'bounded-sum'"
+                )
 
     def _in_order(self) -> tuple[Rule, ...]:
         """Conditions and consequents in the order of the variables, the rules of a table by row.

@@ -39,7 +39,11 @@ def trapezoid(parameters: Parameters, x: str) -> str:
 
 def _times_inverse(width: float) -> str:
     """Division by a width; by multiplication, which is faster, where the inverse is finite."""
-    return f"* {1 / width!r}" if width > STEEP else f"/ {width!r}"
+    if width <= STEEP:
+        return f"/ {width!r}"
+    inverse = 1 / width
+    # At the corner the grade is 1 and not a rounding below: after `not` a rule fires, or does not.
+    return f"* {inverse if width * inverse >= 1.0 else math.nextafter(inverse, math.inf)!r}"
 
 
 def triangle(parameters: Parameters, x: str) -> str:

@@ -113,8 +113,9 @@ class FuzzySystem:
     Notes
     -----
     Inputs outside of their universe are replaced by its nearest end; a NaN input gives NaN. With
-    non-singleton inputs ``exact`` uses that the composition factorizes over the sets, which holds
-    for every algebra but min with sum; there ``relation`` has to be used.
+    non-singleton inputs ``exact`` uses that the composition factorizes over the sets. This holds
+    for every algebra but min with sum, where the outputs have the AND and OR of the rule base, and
+    alternatives of a rule are joined by that OR; elsewhere ``relation`` has to be used.
     """
 
     def __init__(
@@ -140,10 +141,10 @@ class FuzzySystem:
                     "fuzzification: non-singleton inputs need product or min for and, "
                     "implication and weighting, and sum or max for or"
                 )
-            mixed = any((o.conjunction, o.disjunction) == ("min", "sum") for o in algebras)
-            if mixed and method != "relation":
+            if method != "relation" and not _factorizes(rules):
                 raise ValueError(
-                    "method: with non-singleton inputs, min and sum do not factorize; "
+                    "method: with non-singleton inputs, min and sum do not factorize, nor do an "
+                    "and or or of an output, or alternatives, other than those of the rule base; "
                     "use method='relation'"
                 )
         if method == "table":
@@ -508,6 +509,17 @@ class FuzzySystem:
         grid = dict(zip(names, np.meshgrid(*axes, indexing="ij"), strict=True))
         values = self(**grid, **fixed)[output]
         return Surface(names[0], names[1], output, axes[0], axes[1], np.asarray(values))
+
+
+def _factorizes(rules: RuleBase) -> bool:
+    """Whether fuzzy inputs may be composed with the rules one input at a time."""
+    common = rules.operators
+    algebras = [rules.operators_of(output) for output in rules.outputs]
+    either = {common.disjunction, *(o.disjunction for o in algebras)}
+    if any(rule.alternatives for rule in rules.rules):
+        either.add(common.alternatives)
+    both = {common.conjunction, *(o.conjunction for o in algebras)}
+    return len(both) == len(either) == 1 and not (both == {"min"} and either == {"sum"})
 
 
 def _numbers(values: ArrayLike) -> Array:

@@ -157,6 +157,31 @@ def test_grades_of_own_shapes_follow_another_form_of_the_formula(shape, paramete
     np.testing.assert_allclose(grades, expected, rtol=0, atol=1e-7 if shape == "arc" else 1e-14)
 
 
+@pytest.mark.parametrize("shape", ["trimf", "trapmf", "linsmf", "linzmf"])
+def test_not_is_0_where_the_grade_is_1(shape):
+    # By the array formula and by the expression: at a corner a rule fires in both, or in neither.
+    corners = [round(0.1 * k, 1) for k in range(-60, 60, 11)]
+    count = len(SHAPES[shape].parameters)
+    for parameters in combinations(corners, count):
+        fuzzy_set = FuzzySet("A", f"not {shape}", parameters)
+        core = {"trimf": [1], "trapmf": [1, 2], "linsmf": [1], "linzmf": [0]}[shape]
+        points = [parameters[k] for k in core]
+        assert not fuzzy_set.membership(points).any()
+        assert not any(eval(fuzzy_set.expression("x"), {"x": x}) for x in points)
+
+
+@pytest.mark.parametrize("words", ["", "seldom ", "not "])
+def test_an_ellipse_is_0_at_its_ends_and_1_at_its_middle(words):
+    # A root makes 1e-8 of a rounding, and a second one 1e-4: a rule would fire where none does.
+    tenths = [round(0.1 * k, 1) for k in range(-60, 60, 7)]
+    for start, end in combinations(tenths, 2):
+        ellipse = FuzzySet("A", f"{words}ellipse", (start, end))
+        points = [start, (start + end) / 2, end]
+        due = [1.0, 0.0, 1.0] if words == "not " else [0.0, 1.0, 0.0]
+        assert ellipse.membership(points).tolist() == due
+        assert [eval(ellipse.expression("x"), {"x": x}) for x in points] == due
+
+
 @pytest.mark.parametrize("shape", ["dsigmf", "psigmf"])
 def test_two_sigmoids_are_scikit_fuzzys(shape):
     expected = getattr(reference, shape)(X[4:-4], -0.5, 6.0, 0.4, 9.0)

@@ -192,6 +192,44 @@ def test_by_hand():
     assert value == pytest.approx((0.875 * 1.5 + 0.125 * 2.5) / 1.0, abs=1e-15)
 
 
+def summed(conjunction, disjunction, **options):
+    """One rule, if x is a or z is a then y is p, another if x is b; alternatives are summed."""
+    x = Variable("x", Universe(0, 1, 11), (FuzzySet("a", "linzmf", (0, 1)),
+                                           FuzzySet("b", "linsmf", (0, 1))))  # fmt: skip
+    z = replace_name(x, "z")
+    y = Variable("y", Universe(0, 4, 5), (FuzzySet("p", "trimf", (0, 1, 3)),
+                                          FuzzySet("q", "trimf", (1, 3, 4))))  # fmt: skip
+    rules = (
+        Rule((("x", "a"),), (Consequent("y", "p"),), ((("z", "a"),),)),
+        Rule((("x", "b"),), (Consequent("y", "q"),)),
+    )
+    operators = Operators(conjunction, disjunction, "centroid", alternatives="sum", **options)
+    return RuleBase("summed", (x, z), (y,), rules, operators)
+
+
+@pytest.mark.parametrize(
+    ("disjunction", "due"),
+    # On the grid from 0 to 4: p is 0, 1, 1/2, 0, 0 and q is 0, 0, 1/2, 1, 0; strengths 1.5, 0.25.
+    [("sum", (1.5 * 1 + 0.875 * 2 + 0.25 * 3) / 2.625), ("max", (1.5 + 0.75 * 2 + 0.75) / 2.5)],
+)
+def test_a_sum_of_alternatives_may_exceed_1(disjunction, due):
+    system = ft.FuzzySystem(summed("product", disjunction))
+    assert system.explain(x=0.25, z=0.25)[0].strength == 1.5
+    assert system(x=0.25, z=0.25)["y"] == pytest.approx(due, abs=1e-15)
+    assert infer_function(system)((0.25, 0.25))[0] == pytest.approx(due, abs=1e-15)
+
+
+@pytest.mark.parametrize("algebra", [
+    ("min", "sum", {}), ("einstein-product", "sum", {}), ("product", "algebraic-sum", {}),
+    ("product", "bounded-sum", {}), ("product", "sum", {"implication": "hamacher-product"}),
+    ("product", "max", {"weighting": "min"}),
+])  # fmt: skip
+def test_norms_that_are_for_grades_do_not_take_sums_of_alternatives(algebra):
+    conjunction, disjunction, options = algebra
+    with pytest.raises(RuleBaseError, match=r"alternatives 'sum'.* y has others; .*bounded-sum"):
+        summed(conjunction, disjunction, **options)
+
+
 def test_alternatives_close_holes_and_explain():
     rules = two_rules()
     assert find_hole(rules, "y") is None

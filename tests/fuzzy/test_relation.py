@@ -1,6 +1,7 @@
 """The report's relational matrix, the exact path, and independent loops against each other."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from fuzzytrack.fuzzy.fuzzification import Fuzzification
 from fuzzytrack.fuzzy.membership import FuzzySet
 from fuzzytrack.fuzzy.operators import DEFUZZIFICATIONS, Operators
 from fuzzytrack.fuzzy.relation import MAX_ELEMENTS, compose, relation
-from fuzzytrack.fuzzy.rulebase import RuleBase
+from fuzzytrack.fuzzy.rulebase import Rule, RuleBase
 from fuzzytrack.fuzzy.system import FuzzySystem
 from fuzzytrack.fuzzy.variable import Universe, Variable
 
@@ -224,6 +225,42 @@ def test_min_and_sum_do_not_factorize(method):
     base = asymmetric_base("min", "sum")
     with pytest.raises(ValueError, match=r"method: .*min and sum .*method='relation'"):
         FuzzySystem(base, method, fuzzification=Fuzzification("gaussian", 0.5))
+
+
+def one_at_a_time(base, method="exact"):
+    values = FuzzySystem(base, method, fuzzification=FUZZY_INPUTS[1]).evaluate(
+        np.array([[0.8, 0.25], [1.2, 2.25], [1.6, -0.75]])
+    )
+    return np.stack([values["u"], values["v"]])
+
+
+def alternative(base, word):
+    """The same with alternatives in the first rule, and what joins them."""
+    first, *others = base.rules
+    either = Rule(first.conditions, first.consequents, ((("x", "q"), ("y", "t")), (("y", "s"),)))
+    operators = replace(base.operators, alternatives=word)
+    return replace(base, rules=(either, *others), operators=operators)
+
+
+@pytest.mark.parametrize(("conjunction", "disjunction"), FACTORIZING)
+def test_alternatives_factorize_where_the_or_of_the_rules_joins_them(conjunction, disjunction):
+    base = tiny_base(conjunction, disjunction)
+    fits = alternative(base, disjunction)
+    assert np.abs(one_at_a_time(fits) - one_at_a_time(base)).max() > 1e-3
+    np.testing.assert_allclose(one_at_a_time(fits), one_at_a_time(fits, "relation"), atol=1e-12)
+    for word in ("max", "bounded-sum"):
+        if word != disjunction:
+            with pytest.raises(ValueError, match="do not factorize, nor do"):
+                one_at_a_time(alternative(base, word))
+
+
+@pytest.mark.parametrize(("own", "common"), [*itertools.permutations(ALGEBRAS, 2)])
+def test_operators_of_an_output_that_join_otherwise_do_not_factorize(own, common):
+    base = tiny_base(*common)
+    outputs = tuple(replace(v, operators=Operators(*own)) for v in base.outputs)
+    with pytest.raises(ValueError, match="do not factorize, nor do an and or or of an output"):
+        one_at_a_time(replace(base, outputs=outputs))
+    assert np.isfinite(one_at_a_time(replace(base, outputs=outputs), "relation")).all()
 
 
 def test_a_narrow_fuzzy_input_on_a_grid_point_is_the_crisp_one():
