@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fuzzytrack.fuzzy.rulebase import RuleBase
@@ -71,9 +72,15 @@ def tune_work(tuning: Tuning) -> Work:
                 progress=job.progress,
                 **own,
             )
-        return _as_json(found)
+        return _as_json(_without_path(found, data.path) if isinstance(data, Recorded) else found)
 
     return work
+
+
+def _without_path(found: Tuned, path: Path) -> Tuned:
+    """A result that names its recording as the page does, not where the server keeps it."""
+    data, text = (each.replace(str(path), path.name) for each in (found.data, found.text))
+    return replace(found, data=data, text=text)
 
 
 def _as_json(found: Tuned) -> dict[str, Any]:

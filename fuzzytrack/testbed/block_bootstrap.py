@@ -88,7 +88,8 @@ def rms_change(
     Returns
     -------
     RmsChange
-        Infinite where an error is, NaN where the first one has no error, or there is no plot.
+        Infinite where an error is, or where the end of an interval is too large for a number; NaN
+        where the first one has no error, or there is no plot.
 
     Notes
     -----
@@ -113,9 +114,10 @@ def rms_change(
     error = math.sqrt(count * float(shares**2 @ chance) * count / (count - 1))
     draws = np.random.default_rng(seed).choice(len(chance), (resamples, count), p=chance)
     reach = error * _student(sums[:, draws], middle)
-    return RmsChange(
-        math.expm1(middle), math.expm1(middle - reach), math.expm1(middle + reach), count
-    )
+    # Errors that grow without limit leave an interval whose end is larger than any number.
+    with np.errstate(over="ignore"):
+        change, low, high = np.expm1([middle, middle - reach, middle + reach]).tolist()
+    return RmsChange(change, low, high, count)
 
 
 def _student(drawn: Array, middle: float) -> float:

@@ -76,7 +76,9 @@ def test_a_rule_base_is_tuned_and_opens_in_the_editor(page, csv):
     last = page.job(number)[-1]
     assert last["state"] == "done", last["error"]
     found = last["results"]
-    assert found["text"] is not None
+    # The file is named as the page names it.
+    assert found["data"] == "mine.csv"
+    assert "# Tuned on mine.csv with seed 0 by" in found["text"]
     hello = page.ask("hello", session=page.hello["session"])
     assert [each["kind"] for each in hello["jobs"]] == ["run", "tune"]
     assert hello["jobs"][0]["results"]["runs"] == 2

@@ -89,6 +89,14 @@ def test_what_has_no_interval(one, two, change):
     assert found.blocks == 0
 
 
+def test_the_end_of_an_interval_that_no_number_reaches_is_infinite():
+    """Errors of two trackers that diverge, and do so at different times."""
+    grows = np.exp(np.minimum(0.5 * np.arange(700), 600))
+    found = rms_change(grows, grows[::-1], np.zeros(700, dtype=int))
+    assert found.change == pytest.approx(0, abs=1e-12)
+    assert (found.low, found.high) == (-1, math.inf)
+
+
 def test_one_plot_has_no_interval():
     found = rms_change([1.0], [4.0], [0])
     assert found.change == 1

@@ -59,8 +59,8 @@ export function makeMap({ name, bounds, clicked = null, drawing = () => false })
   let aim = null;
 
   const place = {
-    x: (east) => picture.clientWidth / 2 + (east - center[0]) / scale,
-    y: (north) => picture.clientHeight / 2 - (north - center[1]) / scale,
+    x: (east) => inPicture(picture.clientWidth / 2 + (east - center[0]) / scale),
+    y: (north) => inPicture(picture.clientHeight / 2 - (north - center[1]) / scale),
     get scale() {
       return scale;
     },
@@ -260,6 +260,13 @@ export function boundsOf(points) {
     if (y > found[3]) found[3] = y;
   }
   return found;
+}
+
+// Pixels from which on all is as far away: larger numbers are none in a picture.
+const AWAY = 1e6;
+
+function inPicture(pixels) {
+  return Math.max(-AWAY, Math.min(AWAY, pixels));
 }
 
 // From here on distances are in km, which is shorter.
