@@ -56,67 +56,72 @@ export function mount(element, app) {
   // ------------------------------------------------------------------ open and save
 
   async function open() {
-    const { drafts } = await socket.send("drafts");
-    store.set(await socket.send("files"));
-    const { files, shipped, state } = store.now;
-    const rulebases = files.filter(({ kind }) => kind === "rules");
-    const entry = (kind) => (one) =>
-      html(
-        "button",
-        {
-          type: "button",
-          class: "entry",
-          onclick: async () => {
-            dialog.close();
-            if (await app.edit("open", { name: one })) say(`${one} is open.`);
-          },
-        },
-        html("span", {}, one),
-        html("small", {}, kind),
-      );
-    const draftEntry = ({ key, time, rules, scenario }) =>
-      html(
-        "button",
-        {
-          type: "button",
-          class: "entry",
-          onclick: async () => {
-            dialog.close();
-            if (await app.edit("restore", { key })) say(`The draft of ${rules} is open; undo takes it back.`);
-          },
-        },
-        html("span", {}, `${rules}, scenario ${scenario}`),
-        html("small", {}, `draft, not saved, ${new Date(1000 * time).toLocaleString()}`),
-      );
-    const list = html(
-      "div",
-      { class: "entries" },
-      ...rulebases.map((file) => entry("in the folder")(file.name)),
-      ...drafts.map(draftEntry),
-      ...shipped.map(entry("shipped")),
-    );
+    const list = html("div", { class: "entries" });
+    const choose = () => {
+      for (const one of list.children) one.hidden = !one.textContent.includes(filter.value);
+    };
     const filter = html("input", {
       type: "search",
       placeholder: "Filter",
       "aria-label": "Filter the names",
-      oninput: () => {
-        for (const one of list.children) one.hidden = !one.textContent.includes(filter.value);
-      },
-      onkeydown: (event) => {
+      oninput: choose,
+      onkeydown: async (event) => {
+        if (!["Enter", "ArrowDown"].includes(event.key)) return;
+        event.preventDefault();
+        await filled;
         const left = [...list.children].filter((one) => !one.hidden);
         const first = left.find((one) => one.firstChild.textContent === filter.value) ?? left[0];
-        if (!first || !["Enter", "ArrowDown"].includes(event.key)) return;
-        event.preventDefault();
-        if (event.key === "Enter") first.click();
-        else first.focus();
+        if (event.key === "Enter") first?.click();
+        else first?.focus();
       },
     });
-    goByArrows(list);
-    const warning = state.saved
-      ? null
-      : html("p", { class: "warning" }, "What is open has changes that are not saved. They stay in undo.");
+    const { state } = store.now;
+    const words = "What is open has changes that are not saved. They stay in undo.";
+    const warning = state && !state.saved ? html("p", { class: "warning" }, words) : null;
+    // At once, so that keys that follow are typed here and not into the table.
     const dialog = ask("Open a rule base", [filter, warning, list], []);
     filter.focus();
+    const filled = entries(dialog).then((found) => {
+      list.append(...found);
+      goByArrows(list);
+      choose();
+    });
+    await filled;
+  }
+
+  /** Buttons for what can be opened: of the folder, drafts and shipped ones. */
+  async function entries(dialog) {
+    const { drafts } = await socket.send("drafts");
+    store.set(await socket.send("files"));
+    const { files, shipped } = store.now;
+    const entry = (title, kind, command, values, done) =>
+      html(
+        "button",
+        {
+          type: "button",
+          class: "entry",
+          onclick: async () => {
+            dialog.close();
+            if (await app.edit(command, values)) say(done);
+          },
+        },
+        html("span", {}, title),
+        html("small", {}, kind),
+      );
+    const rules = (name, kind) => entry(name, kind, "open", { name }, `${name} is open.`);
+    return [
+      ...files.filter(({ kind }) => kind === "rules").map(({ name: one }) => rules(one, "in the folder")),
+      ...drafts.map((one) =>
+        entry(
+          `${one.rules}, scenario ${one.scenario}`,
+          `draft, not saved, ${new Date(1000 * one.time).toLocaleString()}`,
+          "restore",
+          { key: one.key },
+          `The draft of ${one.rules} is open; undo takes it back.`,
+        ),
+      ),
+      ...shipped.map((one) => rules(one, "shipped")),
+    ];
   }
 
   async function save() {
